@@ -1,0 +1,224 @@
+"""Kernels of walls: prescribed motion, pressure and velocity seen by the fluid, and the force on a wall.
+
+A wall particle's row of the neighbour list holds fluid in segment 0.
+"""
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import warp as wp
+
+from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation
+from warpsph_kernels.fluid import FluidOptions, make_pair_force
+from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.smoothing import SMOOTHING_KERNELS
+from warpsph_kernels.state import STATES
+
+
+class WallKernels(NamedTuple):
+    """Kernels of walls, in the order of a step."""
+
+    move: Any
+    extrapolate: Any
+    set_pressure: Any
+    update_density: Any
+    react: Any
+
+
+@cache
+def make_pose_struct(arithmetic: Arithmetic) -> Any:
+    """Return the struct of a motion x = A X + b at one time, with the first and second time derivatives of A and b."""
+    dim, point = arithmetic.dimension, arithmetic.point
+    matrix = wp.types.matrix((dim, dim), wp.float64)
+
+    class Pose:
+        pass
+
+    Pose.__annotations__ = {
+        "rotation": matrix,
+        "shift": point,
+        "rotation_rate": matrix,
+        "shift_rate": point,
+        "rotation_acceleration": matrix,
+        "shift_acceleration": point,
+    }
+    return wp.struct(Pose)
+
+
+@cache
+def make_wall_kernels(options: FluidOptions) -> WallKernels:
+    """Return the kernels of walls specialised for the options."""
+    arithmetic = options.arithmetic
+    dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
+    record, point = arithmetic.record, arithmetic.point
+    module = options.module
+    constants_type, pose_type = make_constants_struct(arithmetic), make_pose_struct(arithmetic)
+    pack, unpack = make_packing(arithmetic)
+    narrow = make_narrow(arithmetic)
+    separation = make_separation(arithmetic, options.periodic)
+    shape, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
+    state = STATES[options.state](arithmetic)
+    has_viscosity = options.viscosity != "none"
+    wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def move(
+        offset: int,
+        first_wall: int,
+        wall_volume: real,
+        origin: point,
+        poses: wp.array(dtype=pose_type),
+        set_index: wp.array(dtype=wp.int32),
+        reference: wp.array(dtype=point),
+        position: wp.array(dtype=point),
+        velocity_volume: wp.array(dtype=record),
+        position_pressure: wp.array(dtype=record),
+        position_density: wp.array(dtype=record),
+        acceleration: wp.array(dtype=vector),
+    ):
+        """One wall particle: place it by the pose of its set, with the exact velocity and acceleration."""
+        i = offset + wp.tid()
+        b = first_wall + i
+        pose = poses[set_index[b]]
+        X = reference[i]
+        x = pose.rotation * X + pose.shift
+        v = pose.rotation_rate * X + pose.shift_rate
+        a = pose.rotation_acceleration * X + pose.shift_acceleration
+        x_run = narrow(x, origin)
+        zero = point()
+        position[b] = x
+        velocity_volume[b] = pack(narrow(v, zero), wall_volume)
+        position_pressure[b] = pack(x_run, position_pressure[b][dim])
+        position_density[b] = pack(x_run, position_density[b][dim])
+        acceleration[b] = narrow(a, zero)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def extrapolate(
+        offset: int,
+        c: constants_type,
+        first_wall: int,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        density_deviation: wp.array(dtype=real),
+        acceleration: wp.array(dtype=vector),
+        velocity_volume: wp.array(dtype=record),
+        friction: wp.array(dtype=record),
+        position_pressure: wp.array(dtype=record),
+    ):
+        """One wall particle: pressure and friction velocity from the fluid (Adami, Hu & Adams 2012, eqs. 23, 27)."""
+        i = offset + wp.tid()
+        w = first_wall + i
+        xp_w = position_pressure[w]
+        x_w = unpack(xp_w)
+        weight = real(0.0)
+        pressure = real(0.0)
+        moment = vector()
+        velocity = vector()
+        for n in range(ends[i, 0]):
+            b = neighbours[i, n]
+            xp_b = position_pressure[b]
+            x_wb = separation(x_w, unpack(xp_b), c.period)
+            W = c.norm * shape(wp.length(x_wb) * c.inverse_h)
+            weight += W
+            pressure += W * xp_b[dim]
+            moment += W * (c.rest_density + density_deviation[b]) * x_wb
+            if wp.static(options.wall_friction):
+                velocity += W * unpack(velocity_volume[b])
+        p_w = real(0.0)
+        v_seen = unpack(velocity_volume[w])
+        # A neighbour at the rim of the support has no weight in single precision: there is nothing to average.
+        if weight > real(1.0e-6) * c.norm:
+            p_w = (pressure + wp.dot(c.gravity - acceleration[w], moment)) / weight
+            if wp.static(options.wall_friction):
+                v_seen = real(2.0) * v_seen - velocity / weight
+        position_pressure[w] = pack(x_w, p_w)
+        if wp.static(options.wall_friction):
+            friction[i] = pack(v_seen, friction[i][dim])
+
+    @wp.kernel(module=module, enable_backward=False)
+    def set_pressure(
+        offset: int,
+        c: constants_type,
+        clock: wp.array(dtype=wp.float64),
+        first_wall: int,
+        half_steps: real,
+        density_rate: wp.array(dtype=real),
+        velocity_volume: wp.array(dtype=record),
+        friction: wp.array(dtype=record),
+        density_deviation: wp.array(dtype=real),
+        position_pressure: wp.array(dtype=record),
+    ):
+        """One dynamic wall particle: density over half a step (none if half_steps = 0), then the pressure.
+
+        The density is kept at or above rest, so that a wall does not pull the fluid (Crespo, Gomez-Gesteira &
+        Dalrymple 2007 describe the method; the floor is common practice).
+        """
+        i = offset + wp.tid()
+        w = first_wall + i
+        change = real(wp.float64(0.5) * clock[0]) * half_steps * density_rate[w]
+        deviation = wp.max(density_deviation[w] + change, real(0.0))
+        density_deviation[w] = deviation
+        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        position_pressure[w] = pack(unpack(position_pressure[w]), p)
+        if wp.static(options.wall_friction):
+            friction[i] = pack(unpack(velocity_volume[w]), friction[i][dim])
+
+    @wp.kernel(module=module, enable_backward=False)
+    def update_density(
+        offset: int,
+        c: constants_type,
+        clock: wp.array(dtype=wp.float64),
+        first_wall: int,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        position_density: wp.array(dtype=record),
+        velocity_volume: wp.array(dtype=record),
+        density_rate: wp.array(dtype=real),
+        density_deviation: wp.array(dtype=real),
+    ):
+        """One dynamic wall particle: the continuity equation with the fluid around it, over half a step."""
+        i = offset + wp.tid()
+        w = first_wall + i
+        x_w = unpack(position_density[w])
+        v_w = unpack(velocity_volume[w])
+        divergence = real(0.0)
+        for n in range(ends[i, 0]):
+            b = neighbours[i, n]
+            vV_b = velocity_volume[b]
+            x_wb = separation(x_w, unpack(position_density[b]), c.period)
+            F = c.slope_norm * slope(wp.length(x_wb) * c.inverse_h)
+            divergence += vV_b[dim] * F * wp.dot(v_w - unpack(vV_b), x_wb)
+        rate = (c.rest_density + density_deviation[w]) * divergence
+        density_rate[w] = rate
+        change = real(wp.float64(0.5) * clock[0]) * rate
+        density_deviation[w] = wp.max(density_deviation[w] + change, real(0.0))
+
+    @wp.kernel(module=module, enable_backward=False)
+    def react(
+        offset: int,
+        c: constants_type,
+        first_wall: int,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        position_pressure: wp.array(dtype=record),
+        velocity_volume: wp.array(dtype=record),
+        friction: wp.array(dtype=record),
+        force: wp.array(dtype=vector),
+    ):
+        """One wall particle: the force of the fluid on it [N], pair by pair the opposite of what the fluid receives."""
+        i = offset + wp.tid()
+        xp_w = position_pressure[first_wall + i]
+        x_w, p_w = unpack(xp_w), xp_w[dim]
+        total = vector()
+        for n in range(ends[i, 0]):
+            b = neighbours[i, n]
+            xp_b = position_pressure[b]
+            vV_b = velocity_volume[b]
+            x_wb = separation(x_w, unpack(xp_b), c.period)
+            v_wb = vector()
+            if wp.static(options.wall_friction):
+                v_wb = friction[i][dim] * (unpack(friction[i]) - unpack(vV_b))
+            total += vV_b[dim] * wall_force(c, x_wb, v_wb, p_w, xp_b[dim])
+        force[i] = c.wall_volume * total
+
+    return WallKernels(move, extrapolate, set_pressure, update_density, react)

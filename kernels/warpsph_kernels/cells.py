@@ -1,0 +1,179 @@
+"""The cell grid and the neighbour lists.
+
+Space is cut into cells at least as wide as the search radius. Cell coordinates wrap around the grid (modulo), so
+the table stays small however far particles fly; along a periodic axis the wrap is the period itself. Particles
+lie sorted by cell, x fastest, therefore the three cells that are adjacent along x are one contiguous range.
+"""
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import warp as wp
+
+from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_separation
+
+REMOVED = wp.constant(wp.int32(2147483647))
+"""Sort key of a particle that leaves the run: it ends up behind all others."""
+
+
+class CellKernels(NamedTuple):
+    """Kernels of the neighbour search, in the order of their use."""
+
+    take_positions: Any
+    assign_cells: Any
+    find_cell_starts: Any
+    list_neighbours: Any
+    module: str
+
+
+@cache
+def make_grid_struct(arithmetic: Arithmetic) -> Any:
+    """Return the struct that describes a grid: low corner, 1/cell width per axis [1/m], cells per axis, period."""
+    vector, integers = arithmetic.vector, arithmetic.integers
+
+    class CellGrid:
+        pass
+
+    CellGrid.__annotations__ = {"low": vector, "inverse_width": vector, "cells": integers, "period": vector}
+    return wp.struct(CellGrid)
+
+
+@cache
+def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
+    """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
+    dim = arithmetic.dimension
+    real, vector, point, integers = arithmetic.real, arithmetic.vector, arithmetic.point, arithmetic.integers
+    grid_type = make_grid_struct(arithmetic)
+    narrow = make_narrow(arithmetic)
+    separation = make_separation(arithmetic, periodic)
+    axes = "".join("p" if flag else "o" for flag in periodic)
+    module = f"warpsph_cells_{arithmetic.label}_{axes}"
+    rows = 3 ** (dim - 1)
+
+    @wp.func
+    def wrap(coordinate: int, count: int):
+        remainder = coordinate % count
+        return wp.where(remainder < 0, remainder + count, remainder)
+
+    @wp.func
+    def cell_of(x: vector, grid: grid_type):
+        out = integers()
+        for k in range(wp.static(dim)):
+            # A particle may be further away than an int can count: bring it near in floating point first.
+            turns = wp.floor((x[k] - grid.low[k]) * grid.inverse_width[k] / real(grid.cells[k]))
+            near = (x[k] - grid.low[k]) * grid.inverse_width[k] - turns * real(grid.cells[k])
+            out[k] = wp.clamp(int(near), 0, grid.cells[k] - 1)
+        return out
+
+    @wp.func
+    def row_base(cell: integers, row: int, grid: grid_type):
+        """Return the bucket at x = 0 of the row-th of the rows adjacent to a cell."""
+        y = wrap(cell[1] + row % 3 - 1, grid.cells[1])
+        if wp.static(dim == 2):
+            return y * grid.cells[0]
+        z = wrap(cell[wp.static(dim - 1)] + row // 3 - 1, grid.cells[wp.static(dim - 1)])
+        return (z * grid.cells[1] + y) * grid.cells[0]
+
+    @wp.kernel(module=module, enable_backward=False)
+    def take_positions(
+        offset: int,
+        first: int,
+        origin: point,
+        low: point,
+        period: point,
+        position: wp.array(dtype=point),
+        listed_position: wp.array(dtype=vector),
+    ):
+        """One particle: bring it back into the period, and note the position that the lists are made from."""
+        i = first + offset + wp.tid()
+        x = position[i]
+        for k in range(wp.static(dim)):
+            if wp.static(periodic[k]):
+                x[k] = x[k] - period[k] * wp.floor((x[k] - low[k]) / period[k])
+        position[i] = x
+        listed_position[i] = narrow(x, origin)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def assign_cells(
+        offset: int,
+        listed_position: wp.array(dtype=vector),
+        first: int,
+        kill_low: vector,
+        kill_high: vector,
+        grid: grid_type,
+        key: wp.array(dtype=wp.int32),
+        order: wp.array(dtype=wp.int32),
+    ):
+        """One particle: write its bucket, or REMOVED outside of the kill box, and its index before sorting."""
+        i = offset + wp.tid()
+        x = listed_position[first + i]
+        inside = bool(True)
+        for k in range(wp.static(dim)):
+            inside = inside and x[k] >= kill_low[k] and x[k] <= kill_high[k]
+        cell = cell_of(x, grid)
+        bucket = cell[1] * grid.cells[0] + cell[0]
+        if wp.static(dim == 3):
+            bucket += cell[wp.static(dim - 1)] * grid.cells[0] * grid.cells[1]
+        key[i] = wp.where(inside, bucket, REMOVED)
+        order[i] = i
+
+    @wp.kernel(module=module, enable_backward=False)
+    def find_cell_starts(
+        offset: int, key: wp.array(dtype=wp.int32), count: int, start: wp.array(dtype=wp.int32)
+    ):
+        """One bucket: write the index of the first sorted particle whose key is not below it (bisection)."""
+        bucket = offset + wp.tid()
+        low = int(0)
+        high = int(count)
+        while low < high:
+            middle = (low + high) // 2
+            if key[middle] < bucket:
+                low = middle + 1
+            else:
+                high = middle
+        start[bucket] = low
+
+    @wp.kernel(module=module, enable_backward=False)
+    def list_neighbours(
+        offset: int,
+        first_target: int,
+        listed_position: wp.array(dtype=vector),
+        radius: real,
+        grid: grid_type,
+        first_source: int,
+        start: wp.array(dtype=wp.int32),
+        segment: int,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+    ):
+        """One target particle: append all sources within the radius (but not itself) to its row.
+
+        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]. What does not fit into the row is
+        counted and not stored; the host then makes the rows longer and repeats.
+        """
+        i = offset + wp.tid()
+        a = first_target + i
+        x_a = listed_position[a]
+        cell = cell_of(x_a, grid)
+        capacity = neighbours.shape[1]
+        found = int(0)
+        if segment > 0:
+            found = ends[i, segment - 1]
+        # Only at the ends of a row of cells do the three adjacent cells fall into separate ranges.
+        at_end = cell[0] == 0 or cell[0] == grid.cells[0] - 1
+        ranges = wp.where(at_end, 3, 1)
+        width = wp.where(at_end, 1, 3)
+        for row in range(wp.static(rows)):
+            base = row_base(cell, row, grid)
+            for r in range(ranges):
+                bucket = base + wrap(cell[0] - 1 + r, grid.cells[0])
+                for j in range(start[bucket], start[bucket + width]):
+                    b = first_source + j
+                    x_ab = separation(x_a, listed_position[b], grid.period)
+                    if wp.dot(x_ab, x_ab) < radius * radius and b != a:
+                        if found < capacity:
+                            neighbours[i, found] = b
+                        found += 1
+        ends[i, segment] = found
+
+    return CellKernels(take_positions, assign_cells, find_cell_starts, list_neighbours, module)

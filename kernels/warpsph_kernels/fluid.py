@@ -1,0 +1,246 @@
+"""Kernels of a weakly compressible fluid: momentum, continuity and the pointwise updates between them.
+
+Records that the pair loops read: `position_pressure` (x, p), `position_density` (x, rho - rho0) and
+`velocity_volume` (v, V). The rows of the neighbour list hold fluid in segment 0 and walls in segment 1.
+"""
+
+import hashlib
+from dataclasses import dataclass
+from functools import cache
+from typing import Any, NamedTuple
+
+import warp as wp
+
+from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation, make_widen
+from warpsph_kernels.pair_terms import DIFFUSIONS, PRESSURE_FORMS, VISCOSITIES, make_constants_struct
+from warpsph_kernels.smoothing import SMOOTHING_KERNELS
+from warpsph_kernels.state import STATES
+
+
+@dataclass(frozen=True)
+class FluidOptions:
+    """Everything that selects fluid and wall code; numbers are in the constants struct instead."""
+
+    arithmetic: Arithmetic
+    periodic: tuple[bool, ...]
+    smoothing: str
+    state: str
+    pressure_form: str
+    density_diffusion: str
+    viscosity: str
+    wall: str
+    """Wall method: none, dynamic or extrapolated."""
+    wall_friction: bool
+    """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
+
+    @property
+    def module(self) -> str:
+        """Name of the kernel module of these options, the same in every process so that its binary is reused."""
+        digest = hashlib.sha256(repr(self).encode()).hexdigest()[:10]
+        return f"warpsph_fluid_{self.arithmetic.label}_{digest}"
+
+
+class FluidKernels(NamedTuple):
+    """Kernels of the fluid, in the order of a step."""
+
+    begin_step: Any
+    accelerate: Any
+    kick_and_drift: Any
+    update_density: Any
+    synchronise: Any
+
+
+@cache
+def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
+    """Return the device function `pair_force` of the particles a and b, divided by V_a V_b [N/m^(2 dim)].
+
+    It changes its sign when a and b are exchanged, which is what conserves momentum to rounding.
+    """
+    arithmetic = options.arithmetic
+    dim, real, record, vector = arithmetic.dimension, arithmetic.real, arithmetic.record, arithmetic.vector
+    constants_type = make_constants_struct(arithmetic)
+    _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
+    pressure_term = PRESSURE_FORMS[options.pressure_form](arithmetic)
+    viscous_term = VISCOSITIES[options.viscosity](arithmetic)
+
+    def pair_force(c: constants_type, x_ab: vector, v_ab: vector, p_a: real, p_b: real):
+        r2 = wp.dot(x_ab, x_ab)
+        F = c.slope_norm * slope(wp.sqrt(r2) * c.inverse_h)
+        force = -pressure_term(p_a, p_b) * F * x_ab
+        if wp.static(viscous):
+            force += viscous_term(c, x_ab, v_ab, r2) * F
+        return force
+
+    return wp.func(pair_force)
+
+
+@cache
+def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
+    """Return the kernels of the fluid specialised for the options."""
+    arithmetic = options.arithmetic
+    dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
+    record, point = arithmetic.record, arithmetic.point
+    module = options.module
+    constants_type = make_constants_struct(arithmetic)
+    pack, unpack = make_packing(arithmetic)
+    narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
+    separation = make_separation(arithmetic, options.periodic)
+    _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
+    state = STATES[options.state](arithmetic)
+    diffusion = DIFFUSIONS[options.density_diffusion](arithmetic)
+    has_viscosity = options.viscosity != "none"
+    fluid_force = make_pair_force(options, has_viscosity)
+    wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
+    has_walls = options.wall != "none"
+
+    @wp.kernel(module=module, enable_backward=False)
+    def begin_step(
+        offset: int,
+        c: constants_type,
+        clock: wp.array(dtype=wp.float64),
+        origin: point,
+        density_rate: wp.array(dtype=real),
+        position: wp.array(dtype=point),
+        density_deviation: wp.array(dtype=real),
+        velocity_volume: wp.array(dtype=record),
+        position_pressure: wp.array(dtype=record),
+    ):
+        """One particle: drift and update the density over half a step, then the pressure and the volume."""
+        i = offset + wp.tid()
+        half_step = wp.float64(0.5) * clock[0]
+        v = unpack(velocity_volume[i])
+        x = position[i] + half_step * widen(v)
+        deviation = density_deviation[i] + real(half_step) * density_rate[i]
+        position[i] = x
+        density_deviation[i] = deviation
+        velocity_volume[i] = pack(v, c.mass / (c.rest_density + deviation))
+        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        position_pressure[i] = pack(narrow(x, origin), p)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def synchronise(
+        offset: int,
+        c: constants_type,
+        origin: point,
+        position: wp.array(dtype=point),
+        density_deviation: wp.array(dtype=real),
+        velocity_volume: wp.array(dtype=record),
+        position_pressure: wp.array(dtype=record),
+        position_density: wp.array(dtype=record),
+    ):
+        """One particle: bring every record to the time of position and density, without advancing them."""
+        i = offset + wp.tid()
+        deviation = density_deviation[i]
+        x = narrow(position[i], origin)
+        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        position_pressure[i] = pack(x, p)
+        position_density[i] = pack(x, deviation)
+        velocity_volume[i] = pack(unpack(velocity_volume[i]), c.mass / (c.rest_density + deviation))
+
+    @wp.kernel(module=module, enable_backward=False)
+    def accelerate(
+        offset: int,
+        c: constants_type,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        position_pressure: wp.array(dtype=record),
+        velocity_volume: wp.array(dtype=record),
+        friction: wp.array(dtype=record),
+        first_wall: int,
+        acceleration: wp.array(dtype=vector),
+    ):
+        """One particle: dv_a/dt = g + V_a/m_a sum_b V_b f_ab over fluid and walls.
+
+        The pressure part in volume form is that of Colagrossi & Landrini (2003), eq. 13. `friction` holds the
+        velocity that viscosity sees at a wall particle, and 1 where the wall is no-slip, else 0.
+        """
+        i = offset + wp.tid()
+        xp_a = position_pressure[i]
+        vV_a = velocity_volume[i]
+        x_a, p_a = unpack(xp_a), xp_a[dim]
+        v_a, V_a = unpack(vV_a), vV_a[dim]
+        total = vector()
+        end = ends[i, 0]
+        for n in range(end):
+            b = neighbours[i, n]
+            xp_b = position_pressure[b]
+            vV_b = velocity_volume[b]
+            x_ab = separation(x_a, unpack(xp_b), c.period)
+            total += vV_b[dim] * fluid_force(c, x_ab, v_a - unpack(vV_b), p_a, xp_b[dim])
+        if wp.static(has_walls):
+            for n in range(end, ends[i, 1]):
+                b = neighbours[i, n]
+                xp_b = position_pressure[b]
+                x_ab = separation(x_a, unpack(xp_b), c.period)
+                v_ab = vector()
+                if wp.static(options.wall_friction):
+                    friction_b = friction[b - first_wall]
+                    v_ab = friction_b[dim] * (v_a - unpack(friction_b))
+                total += c.wall_volume * wall_force(c, x_ab, v_ab, p_a, xp_b[dim])
+        acceleration[i] = c.gravity + V_a / c.mass * total
+
+    @wp.kernel(module=module, enable_backward=False)
+    def kick_and_drift(
+        offset: int,
+        clock: wp.array(dtype=wp.float64),
+        origin: point,
+        acceleration: wp.array(dtype=vector),
+        density_deviation: wp.array(dtype=real),
+        position: wp.array(dtype=point),
+        velocity_volume: wp.array(dtype=record),
+        position_density: wp.array(dtype=record),
+    ):
+        """One particle: velocity over the whole step, position over its second half."""
+        i = offset + wp.tid()
+        step = clock[0]
+        vV = velocity_volume[i]
+        v = unpack(vV) + real(step) * acceleration[i]
+        x = position[i] + wp.float64(0.5) * step * widen(v)
+        position[i] = x
+        velocity_volume[i] = pack(v, vV[dim])
+        position_density[i] = pack(narrow(x, origin), density_deviation[i])
+
+    @wp.kernel(module=module, enable_backward=False)
+    def update_density(
+        offset: int,
+        c: constants_type,
+        clock: wp.array(dtype=wp.float64),
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        position_density: wp.array(dtype=record),
+        velocity_volume: wp.array(dtype=record),
+        density_rate: wp.array(dtype=real),
+        density_deviation: wp.array(dtype=real),
+    ):
+        """One particle: drho_a/dt = rho_a sum_b V_b v_ab . grad_a W_ab + diffusion, then rho over half a step.
+
+        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010, eq. 5).
+        """
+        i = offset + wp.tid()
+        xd_a = position_density[i]
+        x_a, deviation_a = unpack(xd_a), xd_a[dim]
+        v_a = unpack(velocity_volume[i])
+        divergence = real(0.0)
+        diffused = real(0.0)
+        end = ends[i, 0]
+        for n in range(end):
+            b = neighbours[i, n]
+            xd_b = position_density[b]
+            vV_b = velocity_volume[b]
+            x_ab = separation(x_a, unpack(xd_b), c.period)
+            r = wp.length(x_ab)
+            VF = vV_b[dim] * c.slope_norm * slope(r * c.inverse_h)
+            divergence += VF * wp.dot(v_a - unpack(vV_b), x_ab)
+            if wp.static(options.density_diffusion != "none"):
+                diffused += VF * diffusion(c, x_ab, deviation_a, xd_b[dim])
+        if wp.static(has_walls):
+            for n in range(end, ends[i, 1]):
+                b = neighbours[i, n]
+                x_ab = separation(x_a, unpack(position_density[b]), c.period)
+                F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
+                divergence += c.wall_volume * F * wp.dot(v_a - unpack(velocity_volume[b]), x_ab)
+        rate = (c.rest_density + deviation_a) * divergence + c.diffusion * diffused
+        density_rate[i] = rate
+        density_deviation[i] = deviation_a + real(wp.float64(0.5) * clock[0]) * rate
+
+    return FluidKernels(begin_step, accelerate, kick_and_drift, update_density, synchronise)

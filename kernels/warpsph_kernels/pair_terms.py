@@ -1,0 +1,137 @@
+"""Exchangeable terms of the fluid's pair sums: pressure forms, viscosities, density diffusions.
+
+Each entry of a registry is a factory that takes the arithmetic and returns a device function. Forces are densities
+per V_a V_b and without the factor F of the kernel gradient (grad_a W_ab = F x_ab, F < 0), see `smoothing`.
+"""
+
+from collections.abc import Callable, Mapping
+from functools import cache
+from types import MappingProxyType
+from typing import Any
+
+import warp as wp
+
+from warpsph_kernels.arithmetic import Arithmetic
+
+Factory = Callable[[Arithmetic], Any]
+
+
+@cache
+def make_constants_struct(arithmetic: Arithmetic) -> Any:
+    """Return the struct of a fluid's numbers: SI units, `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0."""
+    real, vector = arithmetic.real, arithmetic.vector
+
+    class FluidConstants:
+        pass
+
+    scalars = (
+        "smoothing_length",
+        "inverse_h",
+        "norm",
+        "slope_norm",
+        "mass",
+        "wall_volume",
+        "rest_density",
+        "sound_speed",
+        "gamma",
+        "artificial_viscosity",
+        "dynamic_viscosity",
+        "diffusion",
+    )
+    FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | {"gravity": vector, "period": vector}
+    return wp.struct(FluidConstants)
+
+
+@cache
+def make_symmetric_pressure(arithmetic: Arithmetic) -> Any:
+    """p_a + p_b (Colagrossi & Landrini 2003, eq. 13)."""
+    real = arithmetic.real
+
+    def symmetric_pressure(p_a: real, p_b: real):
+        return p_a + p_b
+
+    return wp.func(symmetric_pressure)
+
+
+@cache
+def make_no_viscosity(arithmetic: Arithmetic) -> Any:
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def no_viscosity(c: constants_type, x_ab: vector, v_ab: vector, r2: real):
+        return vector()
+
+    return wp.func(no_viscosity)
+
+
+@cache
+def make_artificial_viscosity(arithmetic: Arithmetic) -> Any:
+    """alpha h c0 rho0 (v_ab . x_ab) / (r^2 + 0.01 h^2) x_ab for approaching pairs (Monaghan 1992, eq. 4.1).
+
+    Density and sound speed of the pair are taken at rest, as usual for a weakly compressible fluid.
+    """
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def artificial_viscosity(c: constants_type, x_ab: vector, v_ab: vector, r2: real):
+        approach = wp.min(wp.dot(v_ab, x_ab), real(0.0))
+        softened = r2 + real(0.01) * c.smoothing_length * c.smoothing_length
+        return c.artificial_viscosity * approach / softened * x_ab
+
+    return wp.func(artificial_viscosity)
+
+
+@cache
+def make_laminar_viscosity(arithmetic: Arithmetic) -> Any:
+    """2 mu r^2 / (r^2 + 0.01 h^2) v_ab (Morris, Fox & Zhu 1997, eq. 22, in volume form)."""
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def laminar_viscosity(c: constants_type, x_ab: vector, v_ab: vector, r2: real):
+        softened = r2 + real(0.01) * c.smoothing_length * c.smoothing_length
+        return real(2.0) * c.dynamic_viscosity * r2 / softened * v_ab
+
+    return wp.func(laminar_viscosity)
+
+
+@cache
+def make_no_diffusion(arithmetic: Arithmetic) -> Any:
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def no_diffusion(c: constants_type, x_ab: vector, deviation_a: real, deviation_b: real):
+        return real(0.0)
+
+    return wp.func(no_diffusion)
+
+
+@cache
+def make_molteni_colagrossi(arithmetic: Arithmetic) -> Any:
+    """-2 (rho_b - rho_a), to be multiplied by delta h c0 V_b F (Molteni & Colagrossi 2009, eq. 9)."""
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def molteni_colagrossi(c: constants_type, x_ab: vector, deviation_a: real, deviation_b: real):
+        return real(2.0) * (deviation_a - deviation_b)
+
+    return wp.func(molteni_colagrossi)
+
+
+@cache
+def make_fourtakas(arithmetic: Arithmetic) -> Any:
+    """Molteni & Colagrossi's term without the hydrostatic part of rho_b - rho_a (Fourtakas et al. 2019, eq. 15).
+
+    The hydrostatic part is linearised, rho0/c0^2 g . (x_b - x_a): over a support the next term is smaller by
+    the relative change of the density.
+    """
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def fourtakas(c: constants_type, x_ab: vector, deviation_a: real, deviation_b: real):
+        hydrostatic = c.rest_density / (c.sound_speed * c.sound_speed) * wp.dot(c.gravity, x_ab)
+        return real(2.0) * (deviation_a - deviation_b - hydrostatic)
+
+    return wp.func(fourtakas)
+
+
+PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType({"symmetric": make_symmetric_pressure})
+VISCOSITIES: Mapping[str, Factory] = MappingProxyType(
+    {"none": make_no_viscosity, "artificial": make_artificial_viscosity, "laminar": make_laminar_viscosity}
+)
+DIFFUSIONS: Mapping[str, Factory] = MappingProxyType(
+    {"none": make_no_diffusion, "molteni_colagrossi": make_molteni_colagrossi, "fourtakas": make_fourtakas}
+)

@@ -1,0 +1,1 @@
+"""Particle arrays on a device, their neighbour lists, and launches that use every core."""

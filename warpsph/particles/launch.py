@@ -1,0 +1,127 @@
+"""Launches that use the whole device: recorded once, split over the cores of a CPU, timed by stage.
+
+Warp runs a launch on its CPU device on one core, but without holding the interpreter lock. A pass therefore cuts
+its range into chunks that a few threads take from a queue. A chunk's first kernel argument is its offset, and a
+kernel writes only what belongs to its own index, so that the result has the same bits for any number of threads.
+"""
+
+from __future__ import annotations
+
+import os
+import threading
+import time
+from collections import defaultdict
+from queue import SimpleQueue
+from typing import Any
+
+import warp as wp
+
+WORTH_SPLITTING = 3.0e-4
+"""Seconds on one thread from which handing chunks to other threads pays for itself (a hand-over costs about 0.1 ms)."""
+CHUNKS_PER_THREAD = 4
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class _Workers:
+    """Threads that run recorded launches from a queue."""
+
+    def __init__(self, count: int) -> None:
+        self._tasks: SimpleQueue[Any] = SimpleQueue()
+        self._finished: SimpleQueue[BaseException | None] = SimpleQueue()
+        for _ in range(count):
+            threading.Thread(target=self._work, daemon=True).start()
+
+    def _work(self) -> None:
+        while True:
+            command = self._tasks.get()
+            try:
+                command.launch()
+            except BaseException as error:  # handed to the caller of run(), who raises it
+                self._finished.put(error)
+            else:
+                self._finished.put(None)
+
+    def run(self, commands: list[Any]) -> None:
+        """Run all commands, the first on the calling thread, and return when the last has ended."""
+        for command in commands[1:]:
+            self._tasks.put(command)
+        commands[0].launch()
+        errors = [self._finished.get() for _ in commands[1:]]
+        for error in errors:
+            if error is not None:
+                raise error
+
+
+class Launcher:
+    """Runs kernels on one device; on a CPU with as many threads as asked for.
+
+    Args:
+        device: Warp device name such as `cpu` or `cuda:0`.
+        threads: CPU threads, all available cores by default; ignored on CUDA.
+    """
+
+    def __init__(self, device: str, threads: int | None = None) -> None:
+        self.device = wp.get_device(device)
+        self.threads = 1 if self.device.is_cuda else (threads or available_cores())
+        self.seconds: dict[str, float] = defaultdict(float)
+        self._workers = _Workers(self.threads - 1) if self.threads > 1 else None
+
+    def bind(self, stage: str, kernel: Any, *arguments: Any) -> Pass:
+        """Return the pass that launches `kernel(offset, *arguments)`; its time counts under `stage`."""
+        return Pass(self, stage, kernel, arguments)
+
+    def run_parallel(self, commands: list[Any]) -> None:
+        assert self._workers is not None
+        self._workers.run(commands)
+
+
+class Pass:
+    """A kernel with its arguments, ready to run over any number of particles."""
+
+    def __init__(self, launcher: Launcher, stage: str, kernel: Any, arguments: tuple[Any, ...]) -> None:
+        self.stage = stage
+        self.kernel = kernel
+        self._launcher = launcher
+        self._arguments = arguments
+        self._count = -1
+        self._whole: Any = None
+        self._chunks: list[Any] = []
+        self._split = False
+
+    def run(self, count: int) -> None:
+        """Launch over the indices 0 .. count - 1."""
+        if count == 0:
+            return
+        if count != self._count:
+            self._prepare(count)
+        start = time.perf_counter()
+        if self._split:
+            self._launcher.run_parallel(self._chunks)
+        else:
+            self._whole.launch()
+        elapsed = time.perf_counter() - start
+        self._launcher.seconds[self.stage] += elapsed
+        if not self._split and self._launcher.threads > 1 and elapsed > WORTH_SPLITTING:
+            self._split_range()
+
+    def _prepare(self, count: int) -> None:
+        self._count = count
+        self._whole = self._record(0, count)
+        if self._split:
+            self._split_range()
+
+    def _split_range(self) -> None:
+        pieces = min(CHUNKS_PER_THREAD * self._launcher.threads, self._count)
+        edges = [self._count * k // pieces for k in range(pieces + 1)]
+        self._chunks = [self._record(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+        self._split = True
+
+    def _record(self, offset: int, count: int) -> Any:
+        inputs = [offset, *self._arguments]
+        return wp.launch(
+            self.kernel, dim=count, inputs=inputs, device=self._launcher.device, record_cmd=True
+        )

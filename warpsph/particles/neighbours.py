@@ -1,0 +1,280 @@
+"""Neighbour search: cells, physical order, and lists with a skin.
+
+One search serves every pair of particle kinds: a row of a list holds the neighbours of one particle, first those
+among the fluid, then those among the walls.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.cells import make_cell_kernels, make_grid_struct
+from warpsph_kernels.reorder import gather_words
+
+from warpsph.particles.launch import Launcher, Pass
+
+CELLS_PER_PARTICLE = 2
+"""Largest number of cells in relation to the particles: beyond it the grid wraps around instead of growing."""
+FIRST_CAPACITY_MARGIN = 1.25
+GROWTH = 1.3
+
+
+@dataclass(frozen=True)
+class SearchSpace:
+    """Where particles are searched for, in metres and world coordinates.
+
+    `low` and `high` bound the particles of the start; they size the grid and do not limit motion. Along a periodic
+    axis they are the period. Particles outside of the kill box are removed.
+    """
+
+    low: np.ndarray
+    high: np.ndarray
+    periodic: tuple[bool, ...]
+    kill_low: np.ndarray
+    kill_high: np.ndarray
+
+    @property
+    def origin(self) -> np.ndarray:
+        """Origin of the single-precision coordinates."""
+        return 0.5 * (self.low + self.high)
+
+    @property
+    def period(self) -> np.ndarray:
+        return np.where(self.periodic, self.high - self.low, 0.0)
+
+
+class CellTable:
+    """A contiguous range of particles sorted by cell, with the start of every cell.
+
+    Args:
+        first: index of the range's first particle.
+        capacity: number of particles at the start, never exceeded.
+    """
+
+    def __init__(self, launcher: Launcher, first: int, capacity: int, buckets: int) -> None:
+        device = launcher.device
+        self.first = first
+        self.count = capacity
+        self.start = wp.zeros(buckets + 1, dtype=wp.int32, device=device)
+        self.key = wp.zeros(2 * max(capacity, 1), dtype=wp.int32, device=device)
+        self.order = wp.zeros(2 * max(capacity, 1), dtype=wp.int32, device=device)
+
+
+class NeighbourRows:
+    """Neighbour rows of a range of target particles, one segment for each source table."""
+
+    def __init__(self, launcher: Launcher, targets: CellTable, sources: Sequence[CellTable], capacity: int) -> None:
+        self.targets = targets
+        self.sources = tuple(sources)
+        self._launcher = launcher
+        rows = max(targets.count, 1)
+        self.ends = wp.zeros((rows, max(len(self.sources), 1)), dtype=wp.int32, device=launcher.device)
+        self.index = self._allocate(rows, capacity)
+
+    @property
+    def capacity(self) -> int:
+        return int(self.index.shape[1])
+
+    def grow(self, capacity: int) -> None:
+        """Make room for `capacity` neighbours a row; the lists have to be filled again."""
+        self.index = self._allocate(self.index.shape[0], capacity)
+
+    def _allocate(self, rows: int, capacity: int) -> wp.array:
+        # A CPU core reads its row from end to end, a GPU warp reads the same column of 32 rows at once.
+        if self._launcher.device.is_cuda:
+            return wp.empty((capacity, rows), dtype=wp.int32, device=self._launcher.device).transpose()
+        return wp.empty((rows, capacity), dtype=wp.int32, device=self._launcher.device)
+
+
+class NeighbourSearch:
+    """Keeps particles sorted by cell and lists their neighbours within `radius + skin`.
+
+    Args:
+        tables: (first, count) of each particle range that is searched in.
+        pairs: (target range, source ranges) of each list, by position in `tables`.
+        radius, skin: metres. Lists stay complete while no particle has moved more than half the skin.
+        position: master positions of all particles, (n,) double vectors [m].
+    """
+
+    def __init__(
+        self,
+        launcher: Launcher,
+        arithmetic: Arithmetic,
+        space: SearchSpace,
+        ranges: Sequence[tuple[int, int]],
+        pairs: Sequence[tuple[int, Sequence[int]]],
+        radius: float,
+        skin: float,
+        spacing: float,
+        position: wp.array,
+    ) -> None:
+        self.arithmetic = arithmetic
+        self.space = space
+        self.skin = skin
+        self.builds = 0
+        self._launcher = launcher
+        self._reach = radius + skin
+        self._kernels = make_cell_kernels(arithmetic, space.periodic)
+        particles = sum(count for _, count in ranges)
+        self.cells = self._choose_cells(particles)
+        self.grid = self._describe_grid()
+        buckets = int(np.prod(self.cells))
+        self.tables = [CellTable(launcher, first, count, buckets) for first, count in ranges]
+        self.listed_position = wp.zeros(max(particles, 1), dtype=arithmetic.vector, device=launcher.device)
+        capacity = self._estimate_neighbours(spacing)
+        self.rows = [
+            NeighbourRows(launcher, self.tables[target], [self.tables[s] for s in sources], capacity)
+            for target, sources in pairs
+        ]
+        self._listed = [Reordered(launcher, self.listed_position, table, table.first) for table in self.tables]
+        self._take = [self._bind_take(table, position) for table in self.tables]
+        self._assign = [self._bind_assign(table) for table in self.tables]
+
+    def take_positions(self, moving: Sequence[bool]) -> None:
+        """Note the present positions of the tables that move, as those that the next lists are made from."""
+        for table, take, moves in zip(self.tables, self._take, moving, strict=True):
+            if moves:
+                take.run(table.count)
+
+    def sort(self, table_index: int, arrays: Sequence[Reordered]) -> int:
+        """Sort a table and its arrays by cell; return the number of particles that left the kill box."""
+        table = self.tables[table_index]
+        self._assign[table_index].run(table.count)
+        if table.count:
+            wp.utils.radix_sort_pairs(table.key, table.order, table.count)
+        for array in (*arrays, self._listed[table_index]):
+            array.apply(table.count)
+        before = table.count
+        self._find_starts(table)
+        table.count = int(table.start[-1:].numpy()[0])
+        return before - table.count
+
+    def list_neighbours(self) -> None:
+        """Fill every list from the sorted tables, with longer rows where they overflow."""
+        self.builds += 1
+        for rows in self.rows:
+            self._fill(rows)
+            longest = self._longest(rows)
+            if longest > rows.capacity:
+                rows.grow(math.ceil(GROWTH * longest))
+                self._fill(rows)
+
+    def must_rebuild(self, displacement: float, speed: float, step: float) -> bool:
+        """Tell whether a particle may leave half the skin within the next step [m, m/s, s]."""
+        return 2.0 * (displacement + speed * step) > self.skin
+
+    @property
+    def bytes(self) -> int:
+        """Memory of lists and cell tables."""
+        lists = sum(rows.index.capacity + rows.ends.capacity for rows in self.rows)
+        tables = sum(t.start.capacity + t.key.capacity + t.order.capacity for t in self.tables)
+        return int(lists + tables + self.listed_position.capacity)
+
+    def _choose_cells(self, particles: int) -> np.ndarray:
+        extent = self.space.high - self.space.low
+        cells = np.maximum(np.floor(extent / self._reach).astype(int), 3)
+        periodic = np.asarray(self.space.periodic)
+        budget = max(CELLS_PER_PARTICLE * particles, 4096)
+        while np.prod(cells[~periodic], dtype=float) * np.prod(cells[periodic], dtype=float) > budget:
+            free = np.where(periodic, 0, cells)
+            widest = int(np.argmax(free))
+            if free[widest] <= 3:
+                break
+            cells[widest] = max(3, cells[widest] // 2)
+        return cells
+
+    def _describe_grid(self) -> Any:
+        arithmetic, space = self.arithmetic, self.space
+        width = np.where(space.periodic, (space.high - space.low) / self.cells, self._reach)
+        grid = make_grid_struct(arithmetic)()
+        grid.low = arithmetic.vector(*(space.low - space.origin))
+        grid.inverse_width = arithmetic.vector(*(1.0 / width))
+        grid.cells = arithmetic.integers(*(int(n) for n in self.cells))
+        grid.period = arithmetic.vector(*space.period)
+        return grid
+
+    def _estimate_neighbours(self, spacing: float) -> int:
+        reach = self._reach / spacing
+        ball = math.pi * reach**2 if self.arithmetic.dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
+        return math.ceil(FIRST_CAPACITY_MARGIN * ball)
+
+    def _bind_take(self, table: CellTable, position: wp.array) -> Pass:
+        space, point = self.space, self.arithmetic.point
+        return self._launcher.bind(
+            "sort",
+            self._kernels.take_positions,
+            table.first,
+            point(*space.origin),
+            point(*space.low),
+            point(*space.period),
+            position,
+            self.listed_position,
+        )
+
+    def _bind_assign(self, table: CellTable) -> Pass:
+        space, vector = self.space, self.arithmetic.vector
+        return self._launcher.bind(
+            "sort",
+            self._kernels.assign_cells,
+            self.listed_position,
+            table.first,
+            vector(*(space.kill_low - space.origin)),
+            vector(*(space.kill_high - space.origin)),
+            self.grid,
+            table.key,
+            table.order,
+        )
+
+    def _find_starts(self, table: CellTable) -> None:
+        buckets = table.start.shape[0]
+        self._launcher.bind("sort", self._kernels.find_cell_starts, table.key, table.count, table.start).run(buckets)
+
+    def _fill(self, rows: NeighbourRows) -> None:
+        for segment, source in enumerate(rows.sources):
+            self._launcher.bind(
+                "list neighbours",
+                self._kernels.list_neighbours,
+                rows.targets.first,
+                self.listed_position,
+                self.arithmetic.real(self._reach),
+                self.grid,
+                source.first,
+                source.start,
+                segment,
+                rows.index,
+                rows.ends,
+            ).run(rows.targets.count)
+
+    def _longest(self, rows: NeighbourRows) -> int:
+        ends = rows.ends.numpy()[: rows.targets.count]
+        return int(ends[:, -1].max()) if ends.size else 0
+
+
+class Reordered:
+    """An array that follows the order of a table, in place, with the scratch that this takes.
+
+    Args:
+        first: index in the array of the table's first particle.
+    """
+
+    def __init__(self, launcher: Launcher, array: wp.array, table: CellTable, first: int) -> None:
+        words = wp.types.type_size_in_bytes(array.dtype) // 4
+        size = max(table.count, 1)
+        own = array[first : first + size]
+        self._own = wp.array(ptr=own.ptr, dtype=wp.uint32, shape=(size, words), device=launcher.device)
+        self._scratch = wp.empty((size, words), dtype=wp.uint32, device=launcher.device)
+        self._gather = launcher.bind("sort", gather_words, table.order, self._own, self._scratch)
+        self._owner = array  # the words above are a view of its memory
+
+    def apply(self, count: int) -> None:
+        """Bring the first `count` entries into the new order."""
+        if count == 0:
+            return
+        self._gather.run(count)
+        wp.copy(self._own, self._scratch, count=count * self._own.shape[1])

@@ -1,0 +1,40 @@
+"""What the models of one run share: options, constants, arrays, lists and the launcher."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import warp as wp
+from warpsph_kernels.fluid import FluidOptions
+
+from warpsph.particles.launch import Launcher
+from warpsph.particles.neighbours import NeighbourRows, SearchSpace
+from warpsph.particles.state import Layout, Scratch, State
+
+
+@dataclass(frozen=True)
+class Assembly:
+    """The parts from which a model builds its passes. `clock` is described in `warpsph_kernels.clock`."""
+
+    launcher: Launcher
+    options: FluidOptions
+    constants: Any
+    space: SearchSpace
+    layout: Layout
+    state: State
+    scratch: Scratch
+    clock: wp.array
+
+    @property
+    def origin(self) -> Any:
+        """Origin of the single-precision coordinates as a device value."""
+        return self.options.arithmetic.point(*self.space.origin)
+
+
+@dataclass(frozen=True)
+class Lists:
+    """Neighbour rows by target; None where the scene needs no such pairs."""
+
+    fluid: NeighbourRows
+    wall: NeighbourRows | None

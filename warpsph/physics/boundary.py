@@ -1,0 +1,202 @@
+"""Walls: prescribed motion, what the fluid sees of them, and the force on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import warp as wp
+from warpsph_kernels.boundary import make_pose_struct, make_wall_kernels
+
+from warpsph.particles.state import write_array
+from warpsph.physics.assembly import Assembly, Lists
+from warpsph.sampling.kinematics import RigidMotion
+
+
+class WallModel:
+    """The passes of all walls.
+
+    Args:
+        motions: rigid motion by set index, for walls that move.
+        slips: `free_slip` or `no_slip` of each wall particle, as 0 or 1, shape (walls,).
+    """
+
+    def __init__(
+        self, assembly: Assembly, lists: Lists, motions: Mapping[int, RigidMotion], sets: int, friction: wp.array
+    ) -> None:
+        self.count = assembly.layout.walls
+        self.friction = friction
+        self._assembly = assembly
+        self._lists = lists
+        self._motions = dict(motions)
+        self._kernels = make_wall_kernels(assembly.options)
+        arithmetic, device = assembly.options.arithmetic, assembly.launcher.device
+        self._pose_type = make_pose_struct(arithmetic)
+        self._poses = wp.zeros(sets, dtype=self._pose_type, device=device)
+        self._rest_poses = [self._resting_pose() for _ in range(sets)]
+        first = assembly.layout.fluids
+        self.reference = wp.clone(assembly.state.position[first:]) if self.count else None
+        self.force = wp.zeros(max(self.count, 1), dtype=arithmetic.vector, device=device)
+        self._bind()
+
+    @property
+    def moving(self) -> bool:
+        """Whether some wall moves."""
+        return bool(self._motions)
+
+    @property
+    def method(self) -> str:
+        return self._assembly.options.wall
+
+    def move(self, time: float) -> None:
+        """Place every wall as prescribed for a time [s]."""
+        if not self.moving:
+            return
+        self.place(time)
+
+    def place(self, time: float) -> None:
+        """Write position, velocity and acceleration of every wall particle."""
+        poses = list(self._rest_poses)
+        for index, motion in self._motions.items():
+            poses[index] = self._pose(motion, time)
+        self._poses.assign(wp.array(poses, dtype=self._pose_type, device="cpu"))
+        self._move.run(self.count)
+
+    def impose(self) -> None:
+        """Set the pressure and the friction velocity that the fluid sees at the walls."""
+        self._impose.run(self.count)
+
+    def update_density(self) -> None:
+        """Advance the density of dynamic walls; other walls have none."""
+        if self.method == "dynamic":
+            self._update_density.run(self.count)
+
+    def synchronise(self) -> None:
+        """Bring the wall pressure to the time of the fluid, without advancing anything."""
+        if self.method == "dynamic":
+            self._show.run(self.count)
+        else:
+            self._impose.run(self.count)
+
+    def react(self) -> wp.array:
+        """Return the force of the fluid on each wall particle [N], shape (walls,); needs synchronised records."""
+        self._react.run(self.count)
+        return self.force
+
+    def bind_lists(self) -> None:
+        """Build the passes that read neighbour lists; needed again when the rows have grown."""
+        self._bind()
+
+    def _bind(self) -> None:
+        if not self.count:
+            return
+        a = self._assembly
+        first, state, scratch = a.layout.fluids, a.state, a.scratch
+        rows = self._lists.wall
+        assert rows is not None
+        kernels, bind = self._kernels, a.launcher.bind
+        self._move = bind(
+            "move walls",
+            kernels.move,
+            first,
+            a.constants.wall_volume,
+            a.origin,
+            self._poses,
+            state.set_index,
+            self.reference,
+            state.position,
+            state.velocity_volume,
+            scratch.position_pressure,
+            scratch.position_density,
+            state.acceleration,
+        )
+        self._react = bind(
+            "wall force",
+            kernels.react,
+            a.constants,
+            first,
+            rows.index,
+            rows.ends,
+            scratch.position_pressure,
+            state.velocity_volume,
+            self.friction,
+            self.force,
+        )
+        if self.method == "dynamic":
+            self._bind_dynamic(rows)
+        else:
+            self._bind_extrapolated(rows)
+
+    def _bind_extrapolated(self, rows: Any) -> None:
+        a = self._assembly
+        self._impose = a.launcher.bind(
+            "extrapolate to walls",
+            self._kernels.extrapolate,
+            a.constants,
+            a.layout.fluids,
+            rows.index,
+            rows.ends,
+            a.state.density_deviation,
+            a.state.acceleration,
+            a.state.velocity_volume,
+            self.friction,
+            a.scratch.position_pressure,
+        )
+
+    def _bind_dynamic(self, rows: Any) -> None:
+        a = self._assembly
+        state, scratch, real = a.state, a.scratch, a.options.arithmetic.real
+
+        def set_pressure(half_steps: float) -> Any:
+            return a.launcher.bind(
+                "wall pressure",
+                self._kernels.set_pressure,
+                a.constants,
+                a.clock,
+                a.layout.fluids,
+                real(half_steps),
+                state.density_rate,
+                state.velocity_volume,
+                self.friction,
+                state.density_deviation,
+                scratch.position_pressure,
+            )
+
+        self._impose, self._show = set_pressure(1.0), set_pressure(0.0)
+        self._update_density = a.launcher.bind(
+            "update wall density",
+            self._kernels.update_density,
+            a.constants,
+            a.clock,
+            a.layout.fluids,
+            rows.index,
+            rows.ends,
+            scratch.position_density,
+            state.velocity_volume,
+            state.density_rate,
+            state.density_deviation,
+        )
+
+    def _resting_pose(self) -> Any:
+        pose = self._pose_type()
+        pose.rotation = np.eye(self._assembly.options.arithmetic.dimension)
+        return pose
+
+    def _pose(self, motion: RigidMotion, time: float) -> Any:
+        raise NotImplementedError
+
+
+def friction_records(assembly: Assembly, no_slip: np.ndarray) -> wp.array:
+    """Return the friction record of each wall particle: velocity seen by viscosity, and 1 where it is no-slip."""
+    arithmetic = assembly.options.arithmetic
+    values = np.zeros((max(len(no_slip), 1), arithmetic.dimension + 1))
+    values[: len(no_slip), -1] = no_slip
+    array = wp.zeros(len(values), dtype=arithmetic.record, device=assembly.launcher.device)
+    write_array(array, values)
+    return array
+
+
+def no_slip_flags(slips: Sequence[bool], counts: Sequence[int]) -> np.ndarray:
+    """Return 1 for each particle of a no-slip wall and 0 for others, walls in order."""
+    return np.repeat(np.asarray(slips, dtype=float), counts)

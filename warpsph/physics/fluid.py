@@ -1,0 +1,206 @@
+"""The weakly compressible fluid: options and constants from the scene, and its passes."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.smoothing import SMOOTHING_KERNELS
+
+from warpsph.particles.neighbours import SearchSpace
+from warpsph.physics.assembly import Assembly, Lists
+from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.schema import Fluid, Scene
+
+
+def smoothing_length(scene: Scene) -> float:
+    """Return h [m]."""
+    return scene.numerics.h_over_dp * scene.spacing
+
+
+def support_radius(scene: Scene) -> float:
+    """Return the radius beyond which the kernel is zero [m]."""
+    return SMOOTHING_KERNELS[scene.numerics.kernel].support * smoothing_length(scene)
+
+
+def single_phase(scene: Scene) -> Fluid:
+    """Return a fluid whose material is that of all fluids of the scene.
+
+    Raises:
+        SceneError: if two fluids differ in density or viscosity.
+    """
+    names = list(scene.fluids)
+    first = scene.fluids[names[0]]
+    problems = [
+        Problem(
+            key=f"fluids.{name}.{key}",
+            value=getattr(scene.fluids[name], key),
+            message=f"all fluids of a scene are one phase, and {names[0]} has {getattr(first, key):g}",
+            allowed=f"{getattr(first, key):g}",
+        )
+        for name in names[1:]
+        for key in ("density", "kinematic_viscosity")
+        if getattr(scene.fluids[name], key) != getattr(first, key)
+    ]
+    if problems:
+        raise SceneError(problems)
+    return first
+
+
+def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_walls: bool) -> FluidOptions:
+    """Return the options that select device code for the scene."""
+    numerics = scene.numerics
+    no_slip = any(boundary.slip == "no_slip" for boundary in scene.boundaries.values())
+    return FluidOptions(
+        arithmetic=arithmetic,
+        periodic=space.periodic,
+        smoothing=numerics.kernel,
+        state=numerics.state.type,
+        pressure_form=numerics.pressure_form,
+        density_diffusion=numerics.density_diffusion.type,
+        viscosity=numerics.viscosity.type,
+        wall=numerics.wall.type if has_walls else "none",
+        wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
+    )
+
+
+def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sound_speed: float) -> Any:
+    """Return the constants struct of the scene's fluid."""
+    arithmetic = options.arithmetic
+    fluid, numerics = single_phase(scene), scene.numerics
+    h, dim = smoothing_length(scene), scene.dimension
+    volume = scene.spacing**dim
+    norm = SMOOTHING_KERNELS[numerics.kernel].norm(dim, h)
+    c = make_constants_struct(arithmetic)()
+    c.smoothing_length, c.inverse_h = h, 1.0 / h
+    c.norm, c.slope_norm = norm, norm / h**2
+    c.mass, c.wall_volume = fluid.density * volume, volume
+    c.rest_density, c.sound_speed, c.gamma = fluid.density, sound_speed, numerics.state.gamma
+    c.artificial_viscosity = getattr(numerics.viscosity, "alpha", 0.0) * h * sound_speed * fluid.density
+    c.dynamic_viscosity = fluid.density * fluid.kinematic_viscosity
+    c.diffusion = getattr(numerics.density_diffusion, "delta", 0.0) * h * sound_speed
+    c.gravity = arithmetic.vector(*scene.gravity)
+    c.period = arithmetic.vector(*space.period)
+    return c
+
+
+def step_viscosity(scene: Scene, sound_speed: float) -> float:
+    """Return the kinematic viscosity [m^2/s] that limits the step.
+
+    An artificial viscosity counts as alpha h c0 / 8 in 2D and / 10 in 3D (Monaghan 2005, section 8).
+    """
+    viscosity = scene.numerics.viscosity
+    if viscosity.type == "laminar":
+        return single_phase(scene).kinematic_viscosity
+    if viscosity.type == "artificial":
+        return viscosity.alpha * smoothing_length(scene) * sound_speed / (8.0 if scene.dimension == 2 else 10.0)
+    return 0.0
+
+
+def density_from_pressure(pressure: np.ndarray, density: float, sound_speed: float, gamma: float) -> np.ndarray:
+    """Return rho - rho0 [kg/m^dim] at a pressure [Pa], the inverse of Tait's equation (Monaghan 1994, eq. 2.2)."""
+    strength = density * sound_speed**2 / gamma
+    return density * np.expm1(np.log1p(pressure / strength) / gamma)
+
+
+class FluidModel:
+    """The passes of the fluid. `count` particles are alive."""
+
+    def __init__(self, assembly: Assembly, lists: Lists, friction: Any) -> None:
+        self._lists = lists
+        kernels = make_fluid_kernels(assembly.options)
+        launcher, c, clock, origin = assembly.launcher, assembly.constants, assembly.clock, assembly.origin
+        state, scratch = assembly.state, assembly.scratch
+        self._begin = launcher.bind(
+            "begin step",
+            kernels.begin_step,
+            c,
+            clock,
+            origin,
+            state.density_rate,
+            state.position,
+            state.density_deviation,
+            state.velocity_volume,
+            scratch.position_pressure,
+        )
+        self._synchronise = launcher.bind(
+            "synchronise",
+            kernels.synchronise,
+            c,
+            origin,
+            state.position,
+            state.density_deviation,
+            state.velocity_volume,
+            scratch.position_pressure,
+            scratch.position_density,
+        )
+        self._kick = launcher.bind(
+            "kick and drift",
+            kernels.kick_and_drift,
+            clock,
+            origin,
+            state.acceleration,
+            state.density_deviation,
+            state.position,
+            state.velocity_volume,
+            scratch.position_density,
+        )
+        self._assembly = assembly
+        self._friction = friction
+        self._kernels = kernels
+        self.bind_lists()
+
+    def bind_lists(self) -> None:
+        """Build the passes that read neighbour lists; needed again when the rows have grown."""
+        a, rows = self._assembly, self._lists.fluid
+        self._accelerate = a.launcher.bind(
+            "accelerate",
+            self._kernels.accelerate,
+            a.constants,
+            rows.index,
+            rows.ends,
+            a.scratch.position_pressure,
+            a.state.velocity_volume,
+            self._friction,
+            a.layout.fluids,
+            a.state.acceleration,
+        )
+        self._update_density = a.launcher.bind(
+            "update density",
+            self._kernels.update_density,
+            a.constants,
+            a.clock,
+            rows.index,
+            rows.ends,
+            a.scratch.position_density,
+            a.state.velocity_volume,
+            a.state.density_rate,
+            a.state.density_deviation,
+        )
+
+    @property
+    def count(self) -> int:
+        return self._lists.fluid.targets.count
+
+    def begin_step(self) -> None:
+        """Drift and update the density over half a step."""
+        self._begin.run(self.count)
+
+    def accelerate(self) -> None:
+        """Sum the forces."""
+        self._accelerate.run(self.count)
+
+    def kick_and_drift(self) -> None:
+        """Advance the velocity over the step and the position over its second half."""
+        self._kick.run(self.count)
+
+    def update_density(self) -> None:
+        """Sum the density rate and advance the density over the second half of the step."""
+        self._update_density.run(self.count)
+
+    def synchronise(self) -> None:
+        """Bring pressure and volume to the time of position and density."""
+        self._synchronise.run(self.count)

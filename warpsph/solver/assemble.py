@@ -1,0 +1,153 @@
+"""From a scene and its particles to the arrays, lists and models of a run."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import warp as wp
+from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.clock import CLOCK_SIZE
+
+from warpsph.particles.launch import Launcher
+from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
+from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
+from warpsph.physics.assembly import Assembly, Lists
+from warpsph.physics.boundary import WallModel, friction_records, no_slip_flags
+from warpsph.physics.fluid import (
+    FluidModel,
+    density_from_pressure,
+    fluid_constants,
+    select_code,
+    single_phase,
+    support_radius,
+)
+from warpsph.physics.sound_speed import choose_sound_speed
+from warpsph.sampling import SampledSet
+from warpsph.sampling.kinematics import largest_speed, rigid_motions
+from warpsph.scene.schema import Scene
+
+FLUID, WALL = 0, 1
+"""Tables of the neighbour search."""
+
+
+@dataclass(frozen=True)
+class Parts:
+    """A run, assembled."""
+
+    assembly: Assembly
+    search: NeighbourSearch
+    fluid: FluidModel
+    walls: WallModel | None
+    fluid_arrays: tuple[Reordered, ...]
+    wall_arrays: tuple[Reordered, ...]
+
+
+def search_space(scene: Scene, sets: Sequence[SampledSet]) -> SearchSpace:
+    """Return where particles are searched for: the period, else the box of all particles at the start."""
+    dim = scene.dimension
+    points = np.concatenate([s.position for s in sets])
+    low, high = points.min(axis=0) - scene.spacing, points.max(axis=0) + scene.spacing
+    periodic = [axis in scene.domain.periodic for axis in "xyz"[:dim]]
+    for k, axis in enumerate("xyz"[:dim]):
+        if periodic[k]:
+            low[k], high[k] = scene.domain.periodic[axis]
+    box = scene.domain.kill_box
+    far = np.full(dim, np.inf)
+    return SearchSpace(
+        low=low,
+        high=high,
+        periodic=tuple(periodic),
+        kill_low=np.asarray(box.min) if box else -far,
+        kill_high=np.asarray(box.max) if box else far,
+    )
+
+
+def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Parts:
+    """Allocate everything that the scene needs and bind its passes."""
+    arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
+    layout = Layout(
+        fluids=sum(len(s.position) for s in sets if s.kind == "fluid"),
+        walls=sum(len(s.position) for s in sets if s.kind == "boundary"),
+    )
+    space = search_space(scene, sets)
+    motions = rigid_motions(scene)
+    sound_speed = choose_sound_speed(scene, sets, largest_speed(scene, sets))
+    options = select_code(scene, arithmetic, space, has_walls=layout.walls > 0)
+    assembly = Assembly(
+        launcher=launcher,
+        options=options,
+        constants=fluid_constants(scene, options, space, sound_speed),
+        space=space,
+        layout=layout,
+        state=allocate_state(arithmetic, layout, launcher.device),
+        scratch=allocate_scratch(arithmetic, layout, launcher.device),
+        clock=wp.zeros(CLOCK_SIZE, dtype=wp.float64, device=launcher.device),
+    )
+    _fill_state(scene, sets, assembly)
+    search = _make_search(scene, assembly)
+    lists = Lists(fluid=search.rows[FLUID], wall=search.rows[WALL] if layout.walls else None)
+    boundaries = [s for s in sets if s.kind == "boundary"]
+    flags = no_slip_flags(
+        [scene.boundaries[s.name].slip == "no_slip" for s in boundaries], [len(s.position) for s in boundaries]
+    )
+    friction = friction_records(assembly, flags)
+    fluid = FluidModel(assembly, lists, friction)
+    walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), friction) if layout.walls else None
+    return Parts(assembly, search, fluid, walls, *_reordered(assembly, search, walls))
+
+
+def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
+    return {k: motions[s.name] for k, s in enumerate(sets) if s.name in motions}
+
+
+def _make_search(scene: Scene, assembly: Assembly) -> NeighbourSearch:
+    layout, radius = assembly.layout, support_radius(scene)
+    ranges = [(0, layout.fluids)]
+    pairs: list[tuple[int, list[int]]] = [(FLUID, [FLUID])]
+    if layout.walls:
+        ranges.append((layout.fluids, layout.walls))
+        pairs = [(FLUID, [FLUID, WALL]), (WALL, [FLUID])]
+    return NeighbourSearch(
+        assembly.launcher,
+        assembly.options.arithmetic,
+        assembly.space,
+        ranges,
+        pairs,
+        radius=radius,
+        skin=scene.numerics.skin * radius,
+        spacing=scene.spacing,
+        position=assembly.state.position,
+    )
+
+
+def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) -> None:
+    fluid = single_phase(scene)
+    state, c = assembly.state, assembly.constants
+    position = np.concatenate([s.position for s in sets])
+    velocity = np.concatenate([s.velocity for s in sets])
+    pressure = np.concatenate([s.pressure for s in sets])
+    deviation = density_from_pressure(pressure, fluid.density, float(c.sound_speed), float(c.gamma))
+    volume = float(c.mass) / (fluid.density + deviation)
+    write_array(state.position, position)
+    write_array(state.velocity_volume, np.column_stack([velocity, volume]))
+    write_array(state.density_deviation, deviation)
+    write_array(state.id, np.arange(len(position)))
+    write_array(state.set_index, np.repeat(np.arange(len(sets)), [len(s.position) for s in sets]))
+
+
+def _reordered(
+    assembly: Assembly, search: NeighbourSearch, walls: WallModel | None
+) -> tuple[tuple[Reordered, ...], tuple[Reordered, ...]]:
+    def follow(array: wp.array, table: int, first: int) -> Reordered:
+        return Reordered(assembly.launcher, array, search.tables[table], first)
+
+    state = [array for _, array in arrays_of(assembly.state)]
+    fluid_arrays = tuple(follow(array, FLUID, 0) for array in state)
+    if walls is None:
+        return fluid_arrays, ()
+    records = [array for _, array in arrays_of(assembly.scratch)]
+    shared = [follow(array, WALL, assembly.layout.fluids) for array in (*state, *records)]
+    own = [follow(array, WALL, 0) for array in (walls.reference, walls.friction)]
+    return fluid_arrays, (*shared, *own)

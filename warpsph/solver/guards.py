@@ -1,0 +1,67 @@
+"""What stops a run: a state in which the scheme means nothing any more."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from warpsph.particles.state import host_view
+from warpsph.sampling import SampledSet
+from warpsph.solver.assemble import Parts
+from warpsph.solver.errors import SimulationDiverged
+from warpsph.solver.step import Stepper, StepReport
+
+LARGEST_MACH = 2.0
+"""Speed over sound speed at which a weakly compressible run is stopped."""
+LARGEST_COMPRESSION = 0.5
+"""|rho/rho0 - 1| at which it is stopped."""
+
+
+def check_state(
+    stepper: Stepper, parts: Parts, sets: Sequence[SampledSet], step_count: int, report: StepReport
+) -> None:
+    """Raise SimulationDiverged if the state that the step began with is out of range."""
+    c = parts.assembly.constants
+    if stepper.faults:
+        _stop(parts, sets, stepper, step_count, report, "a value is not finite", _not_finite(parts))
+    if stepper.speed > LARGEST_MACH * c.sound_speed:
+        speed = np.linalg.norm(_velocity(parts), axis=1)
+        _stop(parts, sets, stepper, step_count, report, f"its speed exceeds {LARGEST_MACH:g} times the sound speed", speed)
+    if stepper.compression > LARGEST_COMPRESSION:
+        deviation = np.abs(host_view(parts.assembly.state.density_deviation)) / c.rest_density
+        _stop(parts, sets, stepper, step_count, report, f"its density is off by more than {LARGEST_COMPRESSION:.0%}", deviation)
+
+
+def _velocity(parts: Parts) -> np.ndarray:
+    return host_view(parts.assembly.state.velocity_volume)[:, :-1]
+
+
+def _not_finite(parts: Parts) -> np.ndarray:
+    state = parts.assembly.state
+    total = _velocity(parts).sum(axis=1) + host_view(state.acceleration).sum(axis=1)
+    total = total + host_view(state.density_deviation) + host_view(state.position).sum(axis=1)
+    return np.where(np.isfinite(total), 0.0, np.inf)
+
+
+def _stop(
+    parts: Parts,
+    sets: Sequence[SampledSet],
+    stepper: Stepper,
+    step_count: int,
+    report: StepReport,
+    limit: str,
+    measure: np.ndarray,
+) -> None:
+    state = parts.assembly.state
+    worst = int(np.argmax(measure[: parts.assembly.layout.total]))
+    raise SimulationDiverged(
+        set=sets[int(host_view(state.set_index)[worst])].name,
+        particle=int(host_view(state.id)[worst]),
+        position=tuple(float(x) for x in host_view(state.position)[worst]),
+        time=stepper.time - report.dt,
+        step=step_count,
+        limit=limit,
+        value=float(measure[worst]),
+        advice="Try a smaller time.cfl or spacing, a higher numerics.sound_speed, or more viscosity.",
+    )
