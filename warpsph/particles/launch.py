@@ -19,6 +19,7 @@ import warp as wp
 WORTH_SPLITTING = 3.0e-4
 """Seconds on one thread from which handing chunks to other threads pays for itself (a hand-over costs about 0.1 ms)."""
 CHUNKS_PER_THREAD = 4
+TRIAL_RUNS = 5
 
 
 def available_cores() -> int:
@@ -80,7 +81,11 @@ class Launcher:
 
 
 class Pass:
-    """A kernel with its arguments, ready to run over any number of particles."""
+    """A kernel with its arguments, ready to run over any number of particles.
+
+    The first runs measure whether splitting pays: whole launches first, and if they are long enough chunks; the
+    faster way stays. The shortest of a few runs decides, because another program may disturb any one of them.
+    """
 
     def __init__(self, launcher: Launcher, stage: str, kernel: Any, arguments: tuple[Any, ...]) -> None:
         self.stage = stage
@@ -90,6 +95,7 @@ class Pass:
         self._count = -1
         self._whole: Any = None
         self._chunks: list[Any] = []
+        self._trial = _Trial() if launcher.threads > 1 else None
         self._split = False
 
     def run(self, count: int) -> None:
@@ -97,7 +103,7 @@ class Pass:
         if count == 0:
             return
         if count != self._count:
-            self._prepare(count)
+            self._record(count)
         start = time.perf_counter()
         if self._split:
             self._launcher.run_parallel(self._chunks)
@@ -105,23 +111,48 @@ class Pass:
             self._whole.launch()
         elapsed = time.perf_counter() - start
         self._launcher.seconds[self.stage] += elapsed
-        if not self._split and self._launcher.threads > 1 and elapsed > WORTH_SPLITTING:
-            self._split_range()
+        if self._trial:
+            self._judge(self._trial, elapsed)
 
-    def _prepare(self, count: int) -> None:
+    def _judge(self, trial: _Trial, elapsed: float) -> None:
+        verdict = trial.note(elapsed, self._split)
+        if verdict is None:
+            return
+        self._split, ended = verdict
+        if self._split and not self._chunks:
+            self._chunks = self._record_chunks()
+        if ended:
+            self._trial = None
+
+    def _record(self, count: int) -> None:
         self._count = count
-        self._whole = self._record(0, count)
-        if self._split:
-            self._split_range()
+        self._whole = self._command(0, count)
+        self._chunks = self._record_chunks() if self._split else []
 
-    def _split_range(self) -> None:
+    def _record_chunks(self) -> list[Any]:
         pieces = min(CHUNKS_PER_THREAD * self._launcher.threads, self._count)
         edges = [self._count * k // pieces for k in range(pieces + 1)]
-        self._chunks = [self._record(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True)]
-        self._split = True
+        return [self._command(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True)]
 
-    def _record(self, offset: int, count: int) -> Any:
+    def _command(self, offset: int, count: int) -> Any:
         inputs = [offset, *self._arguments]
-        return wp.launch(
-            self.kernel, dim=count, inputs=inputs, device=self._launcher.device, record_cmd=True
-        )
+        return wp.launch(self.kernel, dim=count, inputs=inputs, device=self._launcher.device, record_cmd=True)
+
+
+class _Trial:
+    """Shortest times of a pass as a whole and in chunks."""
+
+    def __init__(self) -> None:
+        self._shortest = {False: float("inf"), True: float("inf")}
+        self._runs = {False: 0, True: 0}
+
+    def note(self, elapsed: float, split: bool) -> tuple[bool, bool] | None:
+        """Note a run; return (whether to split from now on, whether that is final), or None to go on as it is."""
+        self._runs[split] += 1
+        self._shortest[split] = min(self._shortest[split], elapsed)
+        if self._runs[split] < TRIAL_RUNS:
+            return None
+        if not split:
+            worth = self._shortest[False] > WORTH_SPLITTING
+            return worth, not worth
+        return self._shortest[True] < self._shortest[False], True

@@ -266,9 +266,8 @@ class Reordered:
     def __init__(self, launcher: Launcher, array: wp.array, table: CellTable, first: int) -> None:
         words = wp.types.type_size_in_bytes(array.dtype) // 4
         size = max(table.count, 1)
-        own = array[first : first + size]
-        self._own = wp.array(ptr=own.ptr, dtype=wp.uint32, shape=(size, words), device=launcher.device)
         self._scratch = wp.empty((size, words), dtype=wp.uint32, device=launcher.device)
+        self._own = self._scratch if not table.count else _words_of(array[first : first + size], words)
         self._gather = launcher.bind("sort", gather_words, table.order, self._own, self._scratch)
         self._owner = array  # the words above are a view of its memory
 
@@ -278,3 +277,7 @@ class Reordered:
             return
         self._gather.run(count)
         wp.copy(self._own, self._scratch, count=count * self._own.shape[1])
+
+
+def _words_of(array: wp.array, words: int) -> wp.array:
+    return wp.array(ptr=array.ptr, dtype=wp.uint32, shape=(len(array), words), device=array.device)

@@ -9,9 +9,12 @@ import numpy as np
 import warp as wp
 from warpsph_kernels.boundary import make_pose_struct, make_wall_kernels
 
-from warpsph.particles.state import write_array
+from warpsph.particles.launch import Pass
+from warpsph.particles.neighbours import NeighbourRows
+from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, Lists
-from warpsph.sampling.kinematics import RigidMotion
+from warpsph.physics.state import density_deviation
+from warpsph.sampling.kinematics import Pose, RigidMotion
 
 
 class WallModel:
@@ -19,7 +22,8 @@ class WallModel:
 
     Args:
         motions: rigid motion by set index, for walls that move.
-        slips: `free_slip` or `no_slip` of each wall particle, as 0 or 1, shape (walls,).
+        sets: number of all sets, since a particle names its set by index.
+        friction: records (velocity that viscosity sees, 1 where the wall is no-slip else 0), shape (walls,).
     """
 
     def __init__(
@@ -34,7 +38,7 @@ class WallModel:
         arithmetic, device = assembly.options.arithmetic, assembly.launcher.device
         self._pose_type = make_pose_struct(arithmetic)
         self._poses = wp.zeros(sets, dtype=self._pose_type, device=device)
-        self._rest_poses = [self._resting_pose() for _ in range(sets)]
+        self._resting = [self._device_pose(None) for _ in range(sets)]
         first = assembly.layout.fluids
         self.reference = wp.clone(assembly.state.position[first:]) if self.count else None
         self.force = wp.zeros(max(self.count, 1), dtype=arithmetic.vector, device=device)
@@ -51,16 +55,15 @@ class WallModel:
 
     def move(self, time: float) -> None:
         """Place every wall as prescribed for a time [s]."""
-        if not self.moving:
-            return
-        self.place(time)
+        if self.moving:
+            self.place(time)
 
     def place(self, time: float) -> None:
         """Write position, velocity and acceleration of every wall particle."""
-        poses = list(self._rest_poses)
+        poses = list(self._resting)
         for index, motion in self._motions.items():
-            poses[index] = self._pose(motion, time)
-        self._poses.assign(wp.array(poses, dtype=self._pose_type, device="cpu"))
+            poses[index] = self._device_pose(motion(time))
+        wp.copy(self._poses, wp.array(poses, dtype=self._pose_type, device=self._assembly.launcher.device))
         self._move.run(self.count)
 
     def impose(self) -> None:
@@ -78,6 +81,19 @@ class WallModel:
             self._show.run(self.count)
         else:
             self._impose.run(self.count)
+
+    def start(self) -> None:
+        """Give dynamic walls the density at which they are in equilibrium with the fluid before them."""
+        if self.method != "dynamic":
+            return
+        a, c = self._assembly, self._assembly.constants
+        rows = self._lists.wall
+        assert rows is not None
+        self._extrapolation(rows).run(self.count)
+        pressure = host_view(a.scratch.position_pressure)[a.layout.fluids :, -1].astype(np.float64)
+        strength = float(c.rest_density) * float(c.sound_speed) ** 2
+        deviation = density_deviation(np.maximum(pressure, 0.0), float(c.rest_density), strength, float(c.gamma))
+        write_array(a.state.density_deviation[a.layout.fluids :], deviation)
 
     def react(self) -> wp.array:
         """Return the force of the fluid on each wall particle [N], shape (walls,); needs synchronised records."""
@@ -126,11 +142,11 @@ class WallModel:
         if self.method == "dynamic":
             self._bind_dynamic(rows)
         else:
-            self._bind_extrapolated(rows)
+            self._impose = self._extrapolation(rows)
 
-    def _bind_extrapolated(self, rows: Any) -> None:
+    def _extrapolation(self, rows: NeighbourRows) -> Pass:
         a = self._assembly
-        self._impose = a.launcher.bind(
+        return a.launcher.bind(
             "extrapolate to walls",
             self._kernels.extrapolate,
             a.constants,
@@ -144,7 +160,7 @@ class WallModel:
             a.scratch.position_pressure,
         )
 
-    def _bind_dynamic(self, rows: Any) -> None:
+    def _bind_dynamic(self, rows: NeighbourRows) -> None:
         a = self._assembly
         state, scratch, real = a.state, a.scratch, a.options.arithmetic.real
 
@@ -178,13 +194,26 @@ class WallModel:
             state.density_deviation,
         )
 
-    def _resting_pose(self) -> Any:
-        pose = self._pose_type()
-        pose.rotation = np.eye(self._assembly.options.arithmetic.dimension)
-        return pose
+    def _device_pose(self, pose: Pose | None) -> Any:
+        dim = self._assembly.options.arithmetic.dimension
+        device_pose = self._pose_type()
+        if pose is None:
+            device_pose.rotation = np.eye(dim)
+            return device_pose
+        spin, growth = _cross_matrix(pose.angular_velocity), _cross_matrix(pose.angular_acceleration)
+        device_pose.rotation = pose.rotation
+        device_pose.shift = pose.translation
+        device_pose.rotation_rate = spin[:dim, :dim] @ pose.rotation
+        device_pose.shift_rate = pose.velocity
+        device_pose.rotation_acceleration = (growth + spin @ spin)[:dim, :dim] @ pose.rotation
+        device_pose.shift_acceleration = pose.acceleration
+        return device_pose
 
-    def _pose(self, motion: RigidMotion, time: float) -> Any:
-        raise NotImplementedError
+
+def _cross_matrix(omega: np.ndarray) -> np.ndarray:
+    """Return the matrix of the cross product with omega from the left."""
+    x, y, z = omega
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
 
 
 def friction_records(assembly: Assembly, no_slip: np.ndarray) -> wp.array:

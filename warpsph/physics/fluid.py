@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.pair_terms import make_constants_struct
@@ -98,12 +97,6 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
     if viscosity.type == "artificial":
         return viscosity.alpha * smoothing_length(scene) * sound_speed / (8.0 if scene.dimension == 2 else 10.0)
     return 0.0
-
-
-def density_from_pressure(pressure: np.ndarray, density: float, sound_speed: float, gamma: float) -> np.ndarray:
-    """Return rho - rho0 [kg/m^dim] at a pressure [Pa], the inverse of Tait's equation (Monaghan 1994, eq. 2.2)."""
-    strength = density * sound_speed**2 / gamma
-    return density * np.expm1(np.log1p(pressure / strength) / gamma)
 
 
 class FluidModel:

@@ -17,12 +17,12 @@ from warpsph.physics.assembly import Assembly, Lists
 from warpsph.physics.boundary import WallModel, friction_records, no_slip_flags
 from warpsph.physics.fluid import (
     FluidModel,
-    density_from_pressure,
     fluid_constants,
     select_code,
     single_phase,
     support_radius,
 )
+from warpsph.physics.state import density_deviation
 from warpsph.physics.sound_speed import choose_sound_speed
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
@@ -128,7 +128,8 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
     position = np.concatenate([s.position for s in sets])
     velocity = np.concatenate([s.velocity for s in sets])
     pressure = np.concatenate([s.pressure for s in sets])
-    deviation = density_from_pressure(pressure, fluid.density, float(c.sound_speed), float(c.gamma))
+    stiffness = fluid.density * float(c.sound_speed) ** 2
+    deviation = density_deviation(pressure, fluid.density, stiffness, float(c.gamma))
     volume = float(c.mass) / (fluid.density + deviation)
     write_array(state.position, position)
     write_array(state.velocity_volume, np.column_stack([velocity, volume]))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -14,7 +14,9 @@ from warpsph.particles.state import arrays_of, host_view, write_array
 from warpsph.sampling import SampledSet, sample
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, assemble
+from warpsph.solver.describe import describe
 from warpsph.solver.guards import check_state
+from warpsph.solver.schedule import frame_times
 from warpsph.solver.step import Stepper, StepReport
 
 Callback = Callable[["Simulation"], None]
@@ -127,9 +129,14 @@ class Simulation:
 
     def advance(self, until: float) -> None:
         """Advance to a time [s], on which the last step lands exactly."""
+        for _ in self.steps_until(until):
+            pass
+
+    def steps_until(self, until: float) -> Iterator[StepReport]:
+        """Make the steps to a time [s] one by one, and yield the report of each."""
         self._stepper.set_clock(TARGET=until)
         while self.time < until:
-            self.step()
+            yield self.step()
 
     def run(self) -> None:
         """Advance to the end of the scene and call the frame callbacks at every frame, the first included."""
@@ -145,8 +152,7 @@ class Simulation:
         `position`, `velocity_volume`, `density_deviation`, `acceleration`, `id` or `set_index`. Convert with
         `.numpy()` or through DLPack (`torch.from_dlpack`, `jax.dlpack.from_dlpack`): no copy on the same device.
         """
-        array = getattr(self._parts.assembly.state, name)
-        return array
+        return getattr(self._parts.assembly.state, name)
 
     def frame(self, fields: Sequence[str] | None = None, ordered: bool = True) -> Frame:
         """Return the particles as NumPy arrays, set by set, in the order of their ids if `ordered`.
@@ -169,6 +175,10 @@ class Simulation:
             spacing=self.scene.spacing,
             sets=sets,
         )
+
+    def describe(self) -> dict[str, Any]:
+        """Return what runs: sets, counts, passes, fields with unit and bytes, and the limits of the step."""
+        return describe(self.scene, self._parts, self.sets)
 
     def save_state(self) -> dict[str, Any]:
         """Return everything that a run needs to go on with the same bits."""
@@ -244,15 +254,6 @@ class Simulation:
     def _show_frame(self) -> None:
         for callback in self._frame_callbacks:
             callback(self)
-
-
-def frame_times(scene: Scene) -> list[float]:
-    """Return the times of all frames [s], the start and the end included."""
-    count = round(scene.time.end * scene.time.frame_rate, 9)
-    times = [k / scene.time.frame_rate for k in range(int(np.floor(count)) + 1)]
-    if scene.time.end - times[-1] > 1e-9 * scene.time.end:
-        times.append(scene.time.end)
-    return times
 
 
 def default_device() -> str:

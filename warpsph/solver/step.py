@@ -46,10 +46,12 @@ class Stepper:
             self._walls.place(time)
         self._search.take_positions([True] * len(self._search.tables))
         self.make_lists(all_tables=True)
+        self._fluid.synchronise()
+        if self._walls:
+            self._walls.start()
         self.synchronise()
         self._fluid.update_density()
-        if self._walls:
-            self._walls.update_density()
+        self.update_wall_density()
         self.survey()
 
     def resume(self, clock: np.ndarray) -> None:

@@ -1,0 +1,74 @@
+"""What a scene makes run: particle sets, passes, memory and step limits."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from typing import Any
+
+from warpsph.particles.state import UNITS, arrays_of
+from warpsph.physics.fluid import smoothing_length, step_viscosity
+from warpsph.scene.schema import Scene
+from warpsph.solver.assemble import Parts
+
+TYPICAL_RATE = 1.0e6
+"""Particle-steps a second of two CPU cores, for a first estimate."""
+
+
+def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -> dict[str, Any]:
+    """Return a plain description for people and programs; sizes in bytes, times in seconds."""
+    fields = _fields(parts)
+    limits = _step_limits(scene, float(parts.assembly.constants.sound_speed))
+    particles = parts.assembly.layout.total
+    steps = math.ceil(scene.time.end / min(limits.values()))
+    total = sum(field["bytes"] for field in fields) + parts.search.bytes
+    return {
+        "sets": [{"name": name, "kind": kind, "particles": count} for name, kind, count in sets],
+        "particles": particles,
+        "passes": _passes(parts),
+        "pairs": _pairs(parts),
+        "fields": fields,
+        "list_bytes": parts.search.bytes,
+        "bytes_per_particle": total / max(particles, 1),
+        "sound_speed_m_s": float(parts.assembly.constants.sound_speed),
+        "step_limits_s": limits,
+        "estimated_steps": steps,
+        "estimated_wall_s": steps * particles / TYPICAL_RATE,
+    }
+
+
+def _fields(parts: Parts) -> list[dict[str, Any]]:
+    groups = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
+    return [{"name": name, "unit": UNITS[name], "bytes": int(array.capacity)} for name, array in groups]
+
+
+def _passes(parts: Parts) -> list[str]:
+    passes = ["choose step", "begin step", "accelerate", "kick and drift", "update density", "survey"]
+    walls = parts.walls
+    if walls is None:
+        return passes
+    imposed = "wall pressure" if walls.method == "dynamic" else "extrapolate to walls"
+    passes.insert(2, imposed)
+    if walls.method == "dynamic":
+        passes.insert(-1, "update wall density")
+    if walls.moving:
+        passes.insert(1, "move walls")
+    return passes
+
+
+def _pairs(parts: Parts) -> list[str]:
+    return ["fluid - fluid"] if parts.walls is None else ["fluid - fluid", "fluid - wall", "wall - fluid"]
+
+
+def _step_limits(scene: Scene, sound_speed: float) -> dict[str, float]:
+    h, cfl = smoothing_length(scene), scene.time.cfl
+    gravity = math.hypot(*scene.gravity)
+    limits = {"acoustic": cfl * h / sound_speed}
+    if gravity > 0.0:
+        limits["force"] = cfl * math.sqrt(h / gravity)
+    viscosity = step_viscosity(scene, sound_speed)
+    if viscosity > 0.0:
+        limits["viscous"] = 0.125 * h * h / viscosity
+    if scene.time.max_step is not None:
+        limits["max_step"] = scene.time.max_step
+    return limits

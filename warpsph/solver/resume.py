@@ -1,0 +1,30 @@
+"""Whether a checkpoint belongs to the run that asks for it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ruamel.yaml import YAML
+
+from warpsph.output.checkpoint import CheckpointError
+from warpsph.scene.schema import Scene
+
+FREE_KEYS = {"description", "references", "validation"}
+"""Keys that may differ between the checkpoint's scene and the one that goes on."""
+
+
+def require_same_run(scene: Scene, checkpoint_text: str, path: Path) -> None:
+    """Raise CheckpointError unless the checkpoint was written by the same scene; only its end may be later."""
+    yaml = YAML(typ="safe", pure=True)
+    then, now = yaml.load(checkpoint_text), yaml.load(scene.to_yaml())
+    for document in (then, now):
+        document["time"].pop("end", None)
+        for key in FREE_KEYS:
+            document.pop(key, None)
+    differing = sorted(key for key in {*then, *now} if then.get(key) != now.get(key))
+    if differing:
+        raise CheckpointError(
+            path,
+            f"it was written by another scene: {', '.join(differing)} differ. "
+            "Run without --resume, or with the scene.yaml beside the checkpoint",
+        )

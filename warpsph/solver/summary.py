@@ -1,0 +1,133 @@
+"""What a run tells about itself at the end: cost, conservation, limits, and errors against references."""
+
+from __future__ import annotations
+
+import platform
+from collections.abc import Sequence
+from importlib.metadata import PackageNotFoundError, version
+from typing import Any
+
+
+from warpsph.solver.ledger import Ledger, measure_ledger
+from warpsph.solver.simulation import Simulation
+from warpsph.validation.comparison import Comparison
+
+NOTABLE_MACH = 0.2
+"""Speed over sound speed from which compressibility shows (density errors of four per cent)."""
+NOTABLE_COMPRESSION = 0.05
+
+
+class StepStatistics:
+    """How long the steps were, what limited them, and how far the state went."""
+
+    def __init__(self, sim: Simulation) -> None:
+        self.count = 0
+        self.particle_steps = 0
+        self._shortest, self._longest, self._sum = float("inf"), 0.0, 0.0
+        self._ruling: dict[str, int] = {}
+        self.largest_speed = 0.0
+        self.largest_compression = 0.0
+        self.first: Ledger = measure_ledger(sim)
+
+    def note(self, sim: Simulation) -> None:
+        """Count the step that the simulation has just made."""
+        step = sim.last_step
+        self.count += 1
+        self.particle_steps += sim.particle_count
+        self._sum += step.dt
+        self._ruling[step.limit] = self._ruling.get(step.limit, 0) + 1
+        self.largest_speed = max(self.largest_speed, sim.largest_speed)
+        self.largest_compression = max(self.largest_compression, sim.largest_compression)
+        if step.limit != "frame":
+            self._shortest, self._longest = min(self._shortest, step.dt), max(self._longest, step.dt)
+
+    def save(self) -> dict[str, Any]:
+        """Return everything as plain values."""
+        plain = {key.lstrip("_"): value for key, value in vars(self).items() if key != "first"}
+        return plain | {"first": vars(self.first)}
+
+    def load(self, saved: dict[str, Any]) -> None:
+        """Take over what `save` returned."""
+        self.count, self.particle_steps = saved["count"], saved["particle_steps"]
+        self._shortest, self._longest, self._sum = saved["shortest"], saved["longest"], saved["sum"]
+        self._ruling = dict(saved["ruling"])
+        self.largest_speed, self.largest_compression = saved["largest_speed"], saved["largest_compression"]
+        self.first = Ledger(**saved["first"])
+
+    def as_record(self) -> dict[str, Any]:
+        """Return the statistics for the summary; steps shortened to land on a time do not count as shortest."""
+        return {
+            "count": self.count,
+            "shortest_s": self._shortest if self.count else None,
+            "mean_s": self._sum / self.count if self.count else None,
+            "longest_s": self._longest,
+            "limited_by": self._ruling,
+        }
+
+
+def summarise(
+    sim: Simulation, status: str, wall_seconds: float, statistics: StepStatistics, rows: Sequence[Comparison]
+) -> dict[str, Any]:
+    """Return the summary of a run; `status` is complete, interrupted, failed or `diverged: ...`."""
+    description = sim.describe()
+    stepping = sum(sim.stages.values())
+    return {
+        "scene": sim.scene.name,
+        "status": status,
+        "versions": _versions(),
+        "device": sim.device,
+        "threads": sim.threads,
+        "spacing_m": sim.scene.spacing,
+        "sets": description["sets"],
+        "particles": sim.particle_count,
+        "removed_particles": sim.removed_count,
+        "simulated_s": sim.time,
+        "frames": sim.frame_index + 1,
+        "wall_s": wall_seconds,
+        "wall_s_by_stage": dict(sorted(sim.stages.items(), key=lambda item: -item[1])),
+        "particle_steps_per_second": statistics.particle_steps / stepping if stepping else None,
+        "steps": statistics.as_record(),
+        "list_builds": sim.list_builds,
+        "sound_speed_m_s": sim.sound_speed,
+        "largest_mach": statistics.largest_speed / sim.sound_speed,
+        "largest_compression": statistics.largest_compression,
+        "bytes_per_particle": description["bytes_per_particle"],
+        "passes": description["passes"],
+        "ledger": {"start": vars(statistics.first), "end": _end_ledger(sim, status)},
+        "warnings": _warnings(sim, statistics),
+        "references": [row.as_record() for row in rows],
+    }
+
+
+def _end_ledger(sim: Simulation, status: str) -> dict[str, Any] | None:
+    return None if status.startswith(("diverged", "failed")) else vars(measure_ledger(sim))
+
+
+def _versions() -> dict[str, str]:
+    found = {"python": platform.python_version()}
+    for package in ("warpsph", "warp-lang", "numpy", "usd-core", "h5py"):
+        try:
+            found[package] = version(package)
+        except PackageNotFoundError:
+            found[package] = "not installed"
+    return found
+
+
+def _warnings(sim: Simulation, statistics: StepStatistics) -> list[str]:
+    warnings = []
+    mach = statistics.largest_speed / sim.sound_speed
+    if mach > NOTABLE_MACH:
+        warnings.append(
+            f"the largest speed was {mach:.2f} of the sound speed; above {NOTABLE_MACH:g} compressibility shows: "
+            f"raise numerics.sound_speed above {10.0 * statistics.largest_speed:.3g} m/s"
+        )
+    if statistics.largest_compression > NOTABLE_COMPRESSION:
+        warnings.append(
+            f"the density was off by up to {statistics.largest_compression:.1%}; raise numerics.sound_speed or "
+            "lower time.cfl if that is not the impact of a splash"
+        )
+    if sim.removed_count:
+        warnings.append(f"{sim.removed_count} particles left the kill box and were removed")
+    return warnings
+
+
