@@ -43,7 +43,12 @@ def free_drop(dimension: int = 2, spacing: float = 0.1, **changes: Any) -> Scene
         "pressure": {"type": "uniform", "value": 0.0},
     }
     return _scene(
-        changes, name="free_drop", dimension=dimension, spacing=spacing, fluids={"water": fluid}, sound_speed=10.0
+        changes,
+        name="free_drop",
+        dimension=dimension,
+        spacing=spacing,
+        fluids={"water": fluid},
+        sound_speed=10.0,
     )
 
 

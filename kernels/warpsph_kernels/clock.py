@@ -47,12 +47,7 @@ class StepLimits:
 @cache
 def make_clock_kernels(arithmetic: Arithmetic) -> ClockKernels:
     """Return the kernels of the step choice."""
-    dim, real, vector, record = (
-        arithmetic.dimension,
-        arithmetic.real,
-        arithmetic.vector,
-        arithmetic.record,
-    )
+    real, vector, record = arithmetic.real, arithmetic.vector, arithmetic.record
     module = f"warpsph_clock_{arithmetic.label}"
     _, unpack = make_packing(arithmetic)
 

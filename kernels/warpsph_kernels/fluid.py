@@ -57,7 +57,7 @@ def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     It changes its sign when a and b are exchanged, which is what conserves momentum to rounding.
     """
     arithmetic = options.arithmetic
-    dim, real, record, vector = arithmetic.dimension, arithmetic.real, arithmetic.record, arithmetic.vector
+    real, vector = arithmetic.real, arithmetic.vector
     constants_type = make_constants_struct(arithmetic)
     _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
     pressure_term = PRESSURE_FORMS[options.pressure_form](arithmetic)

@@ -31,7 +31,9 @@ def test_integral_over_space_is_one(kernel, dimension, sphere):
     n = 4000
     q = (np.arange(n) + 0.5) * kernel.support / n
     shape = on_device(kernel.make(Arithmetic(dimension, "double"))[0], q)
-    integral = kernel.norm(dimension, 1.0) * sphere * np.sum(shape * q ** (dimension - 1)) * kernel.support / n
+    integral = (
+        kernel.norm(dimension, 1.0) * sphere * np.sum(shape * q ** (dimension - 1)) * kernel.support / n
+    )
     assert integral == pytest.approx(1.0, abs=1e-6)
 
 

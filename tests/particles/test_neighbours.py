@@ -22,7 +22,9 @@ def make_space(dimension: int, periodic: tuple[bool, ...], kill: float = np.inf)
     )
 
 
-def search(points: np.ndarray, space: SearchSpace, walls: int = 0, precision: str = "double", spacing: float = 0.1):
+def search(
+    points: np.ndarray, space: SearchSpace, walls: int = 0, precision: str = "double", spacing: float = 0.1
+):
     """A search over `points`, of which the last `walls` are walls; returns it with ids that follow the sorting."""
     launcher = Launcher("cpu", 2)
     dimension = points.shape[1]
@@ -53,7 +55,9 @@ def listed_pairs(found: NeighbourSearch, ids: np.ndarray, rows: int, segment: in
     return set(pairs)
 
 
-def brute_force(points: np.ndarray, space: SearchSpace, targets: range, sources: range) -> set[tuple[int, int]]:
+def brute_force(
+    points: np.ndarray, space: SearchSpace, targets: range, sources: range
+) -> set[tuple[int, int]]:
     gap = points[:, None, :] - points[None, :, :]
     period = np.where(space.periodic, 1.0, np.inf)
     gap = np.where(np.isfinite(period), gap - np.round(gap / np.where(np.isfinite(period), period, 1.0)), gap)
@@ -64,7 +68,13 @@ def brute_force(points: np.ndarray, space: SearchSpace, targets: range, sources:
 @pytest.mark.parametrize("precision", ["single", "double"])
 @pytest.mark.parametrize(
     ("dimension", "periodic"),
-    [(2, (False, False)), (2, (True, False)), (2, (True, True)), (3, (False, False, False)), (3, (True, False, True))],
+    [
+        (2, (False, False)),
+        (2, (True, False)),
+        (2, (True, True)),
+        (3, (False, False, False)),
+        (3, (True, False, True)),
+    ],
 )
 def test_lists_equal_brute_force(dimension, periodic, precision):
     # Coordinates on a lattice of 1/1024 shifted against the radius: no pair is undecided in single precision.

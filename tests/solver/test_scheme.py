@@ -31,7 +31,11 @@ def test_momentum_of_a_free_drop_is_conserved_to_rounding(dimension, precision, 
 
 def end_positions(max_step: float) -> np.ndarray:
     scene = free_drop(
-        numerics={"precision": "double", "viscosity": {"type": "none"}, "density_diffusion": {"type": "none"}},
+        numerics={
+            "precision": "double",
+            "viscosity": {"type": "none"},
+            "density_diffusion": {"type": "none"},
+        },
         time={"end": 0.2, "max_step": max_step, "cfl": 1.0},
     )
     sim = Simulation(scene, device="cpu")

@@ -11,6 +11,7 @@ import os
 import threading
 import time
 from collections import defaultdict
+from itertools import pairwise
 from queue import SimpleQueue
 from typing import Any
 
@@ -132,7 +133,7 @@ class Pass:
     def _record_chunks(self) -> list[Any]:
         pieces = min(CHUNKS_PER_THREAD * self._launcher.threads, self._count)
         edges = [self._count * k // pieces for k in range(pieces + 1)]
-        return [self._command(a, b - a) for a, b in zip(edges[:-1], edges[1:], strict=True)]
+        return [self._command(a, b - a) for a, b in pairwise(edges)]
 
     def _command(self, offset: int, count: int) -> Any:
         inputs = [offset, *self._arguments]

@@ -69,7 +69,9 @@ class CellTable:
 class NeighbourRows:
     """Neighbour rows of a range of target particles, one segment for each source table."""
 
-    def __init__(self, launcher: Launcher, targets: CellTable, sources: Sequence[CellTable], capacity: int) -> None:
+    def __init__(
+        self, launcher: Launcher, targets: CellTable, sources: Sequence[CellTable], capacity: int
+    ) -> None:
         self.targets = targets
         self.sources = tuple(sources)
         self._launcher = launcher
@@ -132,7 +134,9 @@ class NeighbourSearch:
             NeighbourRows(launcher, self.tables[target], [self.tables[s] for s in sources], capacity)
             for target, sources in pairs
         ]
-        self._listed = [Reordered(launcher, self.listed_position, table, table.first) for table in self.tables]
+        self._listed = [
+            Reordered(launcher, self.listed_position, table, table.first) for table in self.tables
+        ]
         self._take = [self._bind_take(table, position) for table in self.tables]
         self._assign = [self._bind_assign(table) for table in self.tables]
 
@@ -233,7 +237,9 @@ class NeighbourSearch:
 
     def _find_starts(self, table: CellTable) -> None:
         buckets = table.start.shape[0]
-        self._launcher.bind("sort", self._kernels.find_cell_starts, table.key, table.count, table.start).run(buckets)
+        self._launcher.bind("sort", self._kernels.find_cell_starts, table.key, table.count, table.start).run(
+            buckets
+        )
 
     def _fill(self, rows: NeighbourRows) -> None:
         for segment, source in enumerate(rows.sources):

@@ -27,7 +27,12 @@ class WallModel:
     """
 
     def __init__(
-        self, assembly: Assembly, lists: Lists, motions: Mapping[int, RigidMotion], sets: int, friction: wp.array
+        self,
+        assembly: Assembly,
+        lists: Lists,
+        motions: Mapping[int, RigidMotion],
+        sets: int,
+        friction: wp.array,
     ) -> None:
         self.count = assembly.layout.walls
         self.friction = friction
@@ -92,7 +97,9 @@ class WallModel:
         self._extrapolation(rows).run(self.count)
         pressure = host_view(a.scratch.position_pressure)[a.layout.fluids :, -1].astype(np.float64)
         strength = float(c.rest_density) * float(c.sound_speed) ** 2
-        deviation = density_deviation(np.maximum(pressure, 0.0), float(c.rest_density), strength, float(c.gamma))
+        deviation = density_deviation(
+            np.maximum(pressure, 0.0), float(c.rest_density), strength, float(c.gamma)
+        )
         write_array(a.state.density_deviation[a.layout.fluids :], deviation)
 
     def react(self) -> wp.array:

@@ -11,7 +11,6 @@ from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
 from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists
-from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.schema import Fluid, Scene
 
 
@@ -20,33 +19,9 @@ def smoothing_length(scene: Scene) -> float:
     return scene.numerics.h_over_dp * scene.spacing
 
 
-def support_radius(scene: Scene) -> float:
-    """Return the radius beyond which the kernel is zero [m]."""
-    return SMOOTHING_KERNELS[scene.numerics.kernel].support * smoothing_length(scene)
-
-
-def single_phase(scene: Scene) -> Fluid:
-    """Return a fluid whose material is that of all fluids of the scene.
-
-    Raises:
-        SceneError: if two fluids differ in density or viscosity.
-    """
-    names = list(scene.fluids)
-    first = scene.fluids[names[0]]
-    problems = [
-        Problem(
-            key=f"fluids.{name}.{key}",
-            value=getattr(scene.fluids[name], key),
-            message=f"all fluids of a scene are one phase, and {names[0]} has {getattr(first, key):g}",
-            allowed=f"{getattr(first, key):g}",
-        )
-        for name in names[1:]
-        for key in ("density", "kinematic_viscosity")
-        if getattr(scene.fluids[name], key) != getattr(first, key)
-    ]
-    if problems:
-        raise SceneError(problems)
-    return first
+def material(scene: Scene) -> Fluid:
+    """Return a fluid whose density and viscosity are those of all fluids of the scene, which are one phase."""
+    return next(iter(scene.fluids.values()))
 
 
 def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_walls: bool) -> FluidOptions:
@@ -69,7 +44,7 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
 def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sound_speed: float) -> Any:
     """Return the constants struct of the scene's fluid."""
     arithmetic = options.arithmetic
-    fluid, numerics = single_phase(scene), scene.numerics
+    fluid, numerics = material(scene), scene.numerics
     h, dim = smoothing_length(scene), scene.dimension
     volume = scene.spacing**dim
     norm = SMOOTHING_KERNELS[numerics.kernel].norm(dim, h)
@@ -93,9 +68,11 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
     """
     viscosity = scene.numerics.viscosity
     if viscosity.type == "laminar":
-        return single_phase(scene).kinematic_viscosity
+        return material(scene).kinematic_viscosity
     if viscosity.type == "artificial":
-        return viscosity.alpha * smoothing_length(scene) * sound_speed / (8.0 if scene.dimension == 2 else 10.0)
+        return (
+            viscosity.alpha * smoothing_length(scene) * sound_speed / (8.0 if scene.dimension == 2 else 10.0)
+        )
     return 0.0
 
 

@@ -18,15 +18,15 @@ from warpsph.physics.boundary import WallModel, friction_records, no_slip_flags
 from warpsph.physics.fluid import (
     FluidModel,
     fluid_constants,
+    material,
     select_code,
-    single_phase,
-    support_radius,
 )
-from warpsph.physics.state import density_deviation
 from warpsph.physics.sound_speed import choose_sound_speed
+from warpsph.physics.state import density_deviation
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
 from warpsph.scene.schema import Scene
+from warpsph.scene.types import AXES
 
 FLUID, WALL = 0, 1
 """Tables of the neighbour search."""
@@ -49,8 +49,8 @@ def search_space(scene: Scene, sets: Sequence[SampledSet]) -> SearchSpace:
     dim = scene.dimension
     points = np.concatenate([s.position for s in sets])
     low, high = points.min(axis=0) - scene.spacing, points.max(axis=0) + scene.spacing
-    periodic = [axis in scene.domain.periodic for axis in "xyz"[:dim]]
-    for k, axis in enumerate("xyz"[:dim]):
+    periodic = [axis in scene.domain.periodic for axis in AXES[:dim]]
+    for k, axis in enumerate(AXES[:dim]):
         if periodic[k]:
             low[k], high[k] = scene.domain.periodic[axis]
     box = scene.domain.kill_box
@@ -90,11 +90,14 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
     lists = Lists(fluid=search.rows[FLUID], wall=search.rows[WALL] if layout.walls else None)
     boundaries = [s for s in sets if s.kind == "boundary"]
     flags = no_slip_flags(
-        [scene.boundaries[s.name].slip == "no_slip" for s in boundaries], [len(s.position) for s in boundaries]
+        [scene.boundaries[s.name].slip == "no_slip" for s in boundaries],
+        [len(s.position) for s in boundaries],
     )
     friction = friction_records(assembly, flags)
     fluid = FluidModel(assembly, lists, friction)
-    walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), friction) if layout.walls else None
+    walls = (
+        WallModel(assembly, lists, _by_index(motions, sets), len(sets), friction) if layout.walls else None
+    )
     return Parts(assembly, search, fluid, walls, *_reordered(assembly, search, walls))
 
 
@@ -103,7 +106,7 @@ def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
 
 
 def _make_search(scene: Scene, assembly: Assembly) -> NeighbourSearch:
-    layout, radius = assembly.layout, support_radius(scene)
+    layout, radius = assembly.layout, scene.support_radius
     ranges = [(0, layout.fluids)]
     pairs: list[tuple[int, list[int]]] = [(FLUID, [FLUID])]
     if layout.walls:
@@ -123,7 +126,7 @@ def _make_search(scene: Scene, assembly: Assembly) -> NeighbourSearch:
 
 
 def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) -> None:
-    fluid = single_phase(scene)
+    fluid = material(scene)
     state, c = assembly.state, assembly.constants
     position = np.concatenate([s.position for s in sets])
     velocity = np.concatenate([s.velocity for s in sets])

@@ -27,10 +27,26 @@ def check_state(
         _stop(parts, sets, stepper, step_count, report, "a value is not finite", _not_finite(parts))
     if stepper.speed > LARGEST_MACH * c.sound_speed:
         speed = np.linalg.norm(_velocity(parts), axis=1)
-        _stop(parts, sets, stepper, step_count, report, f"its speed exceeds {LARGEST_MACH:g} times the sound speed", speed)
+        _stop(
+            parts,
+            sets,
+            stepper,
+            step_count,
+            report,
+            f"its speed exceeds {LARGEST_MACH:g} times the sound speed",
+            speed,
+        )
     if stepper.compression > LARGEST_COMPRESSION:
         deviation = np.abs(host_view(parts.assembly.state.density_deviation)) / c.rest_density
-        _stop(parts, sets, stepper, step_count, report, f"its density is off by more than {LARGEST_COMPRESSION:.0%}", deviation)
+        _stop(
+            parts,
+            sets,
+            stepper,
+            step_count,
+            report,
+            f"its density is off by more than {LARGEST_COMPRESSION:.0%}",
+            deviation,
+        )
 
 
 def _velocity(parts: Parts) -> np.ndarray:

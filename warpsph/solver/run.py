@@ -79,6 +79,11 @@ class _Run:
         scene = sim.scene
         self._sim, self._scene, self._directory, self._reporter = sim, scene, directory, reporter
         self._probes = [make_probe(name, spec, scene) for name, spec in scene.probes.items()]
+        self._probe_fields = sorted(
+            {field for p in self._probes for names in p.needs.values() for field in names}
+        )
+        for probe in self._probes:
+            probe.start(self._probe_frame())
         self._stores = frame_stores(directory, scene)
         self._csv = ProbesCsv(directory.probes, [c for probe in self._probes for c in probe.columns])
         self._samples: list[FieldSample] = []
@@ -158,9 +163,11 @@ class _Run:
             self._write_checkpoint()
 
     def _write_probes(self) -> None:
-        needs = {field for probe in self._probes for names in probe.needs.values() for field in names}
-        frame: Frame = self._sim.frame(sorted(needs), ordered=False)
+        frame = self._probe_frame()
         self._csv.write(frame.time, [value for probe in self._probes for value in probe.evaluate(frame)])
+
+    def _probe_frame(self) -> Frame:
+        return self._sim.frame(self._probe_fields, ordered=False)
 
     def _frame_fields(self) -> list[str]:
         return sorted({*self._scene.output.fields, *fields_needed(self._scene), "velocity"})

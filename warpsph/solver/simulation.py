@@ -12,6 +12,7 @@ from warpsph.frame import Frame, SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import arrays_of, host_view, write_array
 from warpsph.sampling import SampledSet, sample
+from warpsph.scene.errors import SceneError
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, assemble
 from warpsph.solver.describe import describe
@@ -37,8 +38,11 @@ class Simulation:
     def __init__(self, scene: Scene, device: str | None = None, threads: int | None = None) -> None:
         self.scene = scene
         self._launcher = Launcher(device or default_device(), threads)
-        self._sampled = sample(scene)
-        self._parts = assemble(scene, self._sampled, self._launcher)
+        try:
+            self._sampled = sample(scene)
+            self._parts = assemble(scene, self._sampled, self._launcher)
+        except SceneError as error:
+            raise scene.located(error) from None
         self._stepper = Stepper(scene, self._parts)
         self._frame_callbacks: list[Callback] = []
         self._step_callbacks: list[Callback] = []
@@ -158,10 +162,12 @@ class Simulation:
         """Return the particles as NumPy arrays, set by set, in the order of their ids if `ordered`.
 
         Args:
-            fields: of position, velocity, density, pressure, mass, and for walls force; all but force by default.
+            fields: position, velocity, pressure, volume; of fluids also density and mass, of walls also force.
         """
         self._stepper.synchronise()
-        wanted = tuple(fields) if fields is not None else ("position", "velocity", "density", "pressure", "mass")
+        wanted = (
+            tuple(fields) if fields is not None else ("position", "velocity", "density", "pressure", "mass")
+        )
         columns = self._columns({"position", *wanted})
         index = np.array(self._host("set_index"))
         index[self._alive : self._parts.assembly.layout.fluids] = -1
@@ -226,6 +232,7 @@ class Simulation:
             "velocity": lambda: velocity_volume[:, :-1],
             "density": lambda: a.constants.rest_density + self._host("density_deviation").astype(np.float64),
             "pressure": lambda: pressure[:, -1],
+            "volume": lambda: velocity_volume[:, -1],
             "mass": lambda: np.full(a.layout.total, a.constants.mass),
             "force": self._wall_force,
         }
@@ -249,7 +256,7 @@ class Simulation:
 
     @staticmethod
     def _has(kind: str, field: str) -> bool:
-        return not (kind == "fluid" and field == "force")
+        return field not in (("force",) if kind == "fluid" else ("density", "mass"))
 
     def _show_frame(self) -> None:
         for callback in self._frame_callbacks:

@@ -13,6 +13,7 @@ import warp as wp
 from warpsph_kernels import clock as clock_kernels
 from warpsph_kernels.clock import BLOCK, LIMITS, StepLimits, make_clock_kernels
 
+from warpsph.particles.launch import Pass
 from warpsph.particles.state import host_view
 from warpsph.physics.fluid import smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
@@ -180,7 +181,7 @@ class Stepper:
         rows = max(self._fluid_blocks + self._wall_blocks, 1)
         extremes = wp.zeros((rows, 5), dtype=arithmetic.real, device=a.launcher.device)
 
-        def bind_survey(first: int, count: int, first_row: int):
+        def bind_survey(first: int, count: int, first_row: int) -> Pass:
             return a.launcher.bind(
                 "survey",
                 kernels.survey,
@@ -199,7 +200,9 @@ class Stepper:
         self._survey_fluid = bind_survey(0, a.layout.fluids, 0)
         self._survey_walls = bind_survey(a.layout.fluids, a.layout.walls, self._fluid_blocks)
         limits = step_limits(scene, float(a.constants.sound_speed))
-        self._choose = a.launcher.bind("choose step", kernels.choose_step, rows, extremes, limits, self._clock)
+        self._choose = a.launcher.bind(
+            "choose step", kernels.choose_step, rows, extremes, limits, self._clock
+        )
 
 
 def step_limits(scene: Scene, sound_speed: float) -> StepLimits:

@@ -7,7 +7,6 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
-
 from warpsph.solver.ledger import Ledger, measure_ledger
 from warpsph.solver.simulation import Simulation
 from warpsph.validation.comparison import Comparison
@@ -129,5 +128,3 @@ def _warnings(sim: Simulation, statistics: StepStatistics) -> list[str]:
     if sim.removed_count:
         warnings.append(f"{sim.removed_count} particles left the kill box and were removed")
     return warnings
-
-

@@ -1,0 +1,68 @@
+"""The state of every particle set at one time, as handed to writers, probes and callbacks."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+
+FIELD_UNITS: dict[str, str] = {
+    "id": "1",
+    "position": "m",
+    "velocity": "m/s",
+    "acceleration": "m/s2",
+    "density": "kg/m3",
+    "pressure": "Pa",
+    "mass": "kg",
+    "volume": "m3",
+    "force": "N",
+}
+"""Units of the fields in three dimensions; see `field_unit` for the plane."""
+
+_PER_METRE_DEPTH = {"mass": "kg/m", "volume": "m2", "force": "N/m"}
+
+
+def field_unit(name: str, dimension: int) -> str:
+    """Unit of a field; in 2D extensive fields are per metre of depth. Unknown fields are pure numbers."""
+    if dimension == 2 and name in _PER_METRE_DEPTH:
+        return _PER_METRE_DEPTH[name]
+    return FIELD_UNITS.get(name, "1")
+
+
+@dataclass(frozen=True)
+class SetFrame:
+    """One particle set: its fields by name, each of shape (n,) or (n, dimension), in the same particle order.
+
+    `id` is int64; `position` is float64 in m; the other fields are in the units of `FIELD_UNITS`.
+    `kind` is "fluid", "boundary" or "structure".
+    """
+
+    name: str
+    kind: str
+    fields: Mapping[str, np.ndarray]
+
+    @property
+    def count(self) -> int:
+        """Number of particles in the set at this time."""
+        return len(self.fields["position"])
+
+
+@dataclass(frozen=True)
+class Frame:
+    """All particle sets at one time [s]; `index` numbers the frames of a run from 0, `spacing` is in m."""
+
+    index: int
+    time: float
+    dimension: int
+    spacing: float
+    sets: tuple[SetFrame, ...]
+
+    def set_named(self, name: str) -> SetFrame:
+        """The set of that name; KeyError names the sets there are."""
+        for particle_set in self.sets:
+            if particle_set.name == name:
+                return particle_set
+        raise KeyError(f"no particle set {name!r}; there are {', '.join(s.name for s in self.sets)}")
+
+    def of_kind(self, kind: str) -> tuple[SetFrame, ...]:
+        """The sets of one kind, in scene order."""
+        return tuple(s for s in self.sets if s.kind == kind)

@@ -1,0 +1,30 @@
+"""From the probes of a scene to the objects that evaluate them."""
+
+from collections.abc import Callable
+from typing import Any
+
+from warpsph.probes.energy import EnergyProbe
+from warpsph.probes.force import ForceProbe
+from warpsph.probes.front import FrontProbe
+from warpsph.probes.point import PointProbe
+from warpsph.probes.probe import Probe
+from warpsph.probes.volume import VolumeProbe
+from warpsph.probes.wall_pressure import WallPressureProbe
+from warpsph.probes.water_level import WaterLevelProbe
+from warpsph.scene.probes import Probe as ProbeSpec
+from warpsph.scene.schema import Scene
+
+PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
+    "front": FrontProbe,
+    "water_level": WaterLevelProbe,
+    "wall_pressure": WallPressureProbe,
+    "point": PointProbe,
+    "force": ForceProbe,
+    "energy": EnergyProbe,
+    "volume": VolumeProbe,
+}
+
+
+def make_probe(name: str, spec: ProbeSpec, scene: Scene) -> Probe:
+    """The probe that a scene describes under a name."""
+    return PROBES[spec.type](name, spec, scene)

@@ -1,0 +1,42 @@
+"""Load of the fluid on a wall."""
+
+import numpy as np
+
+from warpsph.frame import Frame
+from warpsph.probes.probe import Probe
+from warpsph.scene.probes import ForceProbe as ForceSpec
+from warpsph.scene.schema import Scene
+
+
+class ForceProbe(Probe):
+    """Sum of the forces on a wall's particles, and their torque about a fixed point.
+
+    The point is the scene's, or the wall's centre of mass at the start. Torque in the plane is about z.
+    """
+
+    def __init__(self, name: str, spec: ForceSpec, scene: Scene) -> None:
+        needs = {"boundary": ("position", "force")}
+        super().__init__(spec.columns(name, scene.dimension), needs)
+        self._boundary = spec.boundary
+        self._about = None if spec.about is None else np.array(spec.about)
+
+    def start(self, frame: Frame) -> None:
+        """Take the wall's centre of mass, where the scene names no other point."""
+        if self._about is None:
+            self._about = frame.set_named(self._boundary).fields["position"].mean(axis=0)
+
+    def evaluate(self, frame: Frame) -> tuple[float, ...]:
+        """Force [N] and torque [N m] by component; in the plane per metre of depth."""
+        if self._about is None:
+            raise ValueError("start() comes before evaluate()")
+        fields = frame.set_named(self._boundary).fields
+        force = np.asarray(fields["force"], dtype=np.float64)
+        torque = _cross(fields["position"] - self._about, force)
+        return (*map(float, force.sum(axis=0)), *map(float, torque.sum(axis=0)))
+
+
+def _cross(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
+    """Torques (n, 1) about z in the plane, (n, 3) in space."""
+    if arm.shape[1] == 2:
+        return arm[:, :1] * force[:, 1:] - arm[:, 1:] * force[:, :1]
+    return np.cross(arm, force)

@@ -1,0 +1,93 @@
+"""Checks of where fluids and boundaries are, and of the particle number that follows."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from warpsph.scene.bounds import bounding_box
+from warpsph.scene.errors import Problem
+from warpsph.scene.types import AXES
+
+if TYPE_CHECKING:
+    from warpsph.scene.schema import Scene
+
+MAX_PARTICLES = 2**31 - 1
+_ROUNDING = 1e-9
+
+Box = tuple[np.ndarray, np.ndarray]
+
+
+def geometry_problems(scene: Scene) -> Iterator[Problem]:
+    """Shapes that are empty, endless, thinner than a particle, too large, or outside the domain."""
+    boxes = {f"fluids.{name}.shape": bounding_box(fluid.shape) for name, fluid in scene.fluids.items()}
+    problems = [*_endless_problems(boxes)]
+    yield from problems
+    if problems:
+        return
+    yield from _kill_box_problems(scene, boxes)
+    yield from _period_problems(scene, boxes)
+    walls = {f"boundaries.{name}.shape": bounding_box(wall.shape) for name, wall in scene.boundaries.items()}
+    for key, spacing in _spacings(scene):
+        yield from _thin_problems(key, spacing, boxes | walls)
+        yield from _number_problems(key, spacing, boxes)
+
+
+def _spacings(scene: Scene) -> Iterator[tuple[str, float]]:
+    yield "spacing", scene.spacing
+    if scene.validation is not None:
+        for tier in ("resolutions", "quick"):
+            for index, spacing in enumerate(getattr(scene.validation, tier)):
+                yield f"validation.{tier}.{index}", spacing
+
+
+def _endless_problems(fluids: dict[str, Box]) -> Iterator[Problem]:
+    for key, (low, high) in fluids.items():
+        if not np.isfinite([low, high]).all():
+            yield Problem.at(key, "a fluid without end cannot be filled", "a shape that ends on all sides")
+
+
+def _thin_problems(key: str, spacing: float, boxes: dict[str, Box]) -> Iterator[Problem]:
+    """The thinnest shape that the spacing cannot resolve; an empty intersection is thinner than anything."""
+    thickness = {name: float(np.min(high - low)) for name, (low, high) in boxes.items()}
+    name = min(thickness, key=lambda name: thickness[name])
+    if spacing > thickness[name] * (1.0 + _ROUNDING):
+        size = max(thickness[name], 0.0)
+        message = f"the particle spacing is larger than {name}, which is {size:g} m across"
+        yield Problem.at(key, message, f"at most {size:g} m, better a tenth of it", spacing)
+
+
+def _number_problems(key: str, spacing: float, fluids: dict[str, Box]) -> Iterator[Problem]:
+    boxes = fluids.values()
+    number = sum(math.prod(float(length) / spacing for length in high - low) for low, high in boxes)
+    if number > MAX_PARTICLES:
+        message = f"the fluids need up to {number:.2g} particles"
+        coarser = spacing * (number / MAX_PARTICLES) ** (1.0 / len(next(iter(boxes))[0]))
+        yield Problem.at(key, message, f"{MAX_PARTICLES} particles: at least {coarser:.3g} m", spacing)
+
+
+def _kill_box_problems(scene: Scene, fluids: dict[str, Box]) -> Iterator[Problem]:
+    box = scene.domain.kill_box
+    if box is None:
+        return
+    margin = _ROUNDING * np.abs(np.subtract(box.max, box.min))
+    for key, (low, high) in fluids.items():
+        if (low < box.min - margin).any() or (high > box.max + margin).any():
+            message = f"{key} reaches out of the kill box, so particles would be removed at once"
+            yield Problem.at("domain.kill_box", message, f"a box around {_corners(low, high)}")
+
+
+def _period_problems(scene: Scene, fluids: dict[str, Box]) -> Iterator[Problem]:
+    for axis, (start, end) in scene.domain.periodic.items():
+        index, margin = AXES.index(axis), _ROUNDING * abs(end - start)
+        for key, (low, high) in fluids.items():
+            if low[index] < start - margin or high[index] > end + margin:
+                message = f"it reaches from {low[index]:g} to {high[index]:g} m in {axis}, out of the period"
+                yield Problem.at(key, message, f"{start:g} to {end:g} m, as in domain.periodic.{axis}")
+
+
+def _corners(low: np.ndarray, high: np.ndarray) -> str:
+    return f"{low.tolist()} to {high.tolist()}"

@@ -1,0 +1,124 @@
+"""Consistency of probes and references with the rest of the scene."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from warpsph.scene.checks.common import (
+    DeclaredNames,
+    expression_problems,
+    no_such_axis,
+    repeated_problems,
+    unknown_name,
+)
+from warpsph.scene.errors import Problem
+from warpsph.scene.probes import (
+    ForceProbe,
+    FrontProbe,
+    PointProbe,
+    Probe,
+    WallPressureProbe,
+    WaterLevelProbe,
+)
+from warpsph.scene.references import FieldReference, InlineTable, LimitReference, SeriesReference
+from warpsph.scene.types import AXES
+
+if TYPE_CHECKING:
+    from warpsph.scene.schema import Scene
+
+
+def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
+    """Probes of sets or axes that the scene does not have."""
+    for name, probe in scene.probes.items():
+        key = f"probes.{name}"
+        yield from _set_problems(probe, names, key)
+        axis = getattr(probe, "axis", None)
+        if axis == "z" and scene.dimension == 2:
+            yield no_such_axis(f"{key}.axis", axis, scene.dimension)
+        if isinstance(probe, WaterLevelProbe):
+            yield from _gauge_problems(probe, scene, key)
+        if isinstance(probe, PointProbe):
+            yield from repeated_problems(f"{key}.fields", probe.fields)
+
+
+def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    match probe:
+        case FrontProbe(fluid=str(fluid)) if fluid not in names.fluids:
+            yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
+        case WallPressureProbe() | ForceProbe() if probe.boundary not in names.boundaries:
+            yield unknown_name(f"{key}.boundary", "boundary", probe.boundary, names.boundaries)
+
+
+def _gauge_problems(probe: WaterLevelProbe, scene: Scene, key: str) -> Iterator[Problem]:
+    if len(probe.at) != scene.dimension - 1:
+        message = f"{len(probe.at)} coordinates where dimension is {scene.dimension}"
+        allowed = f"{scene.dimension - 1}, for the axes other than that of the level"
+        yield Problem.at(f"{key}.at", message, allowed, list(probe.at))
+    if probe.axis == "auto" and sum(component != 0.0 for component in scene.gravity) != 1:
+        message = f"gravity {list(scene.gravity)} does not point along an axis"
+        yield Problem.at(f"{key}.axis", message, ", ".join(AXES[: scene.dimension]), probe.axis)
+
+
+def reference_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
+    """References to columns, sets and variables that the scene does not have, and tables that are none."""
+    for name, reference in scene.references.items():
+        key = f"references.{name}"
+        match reference:
+            case SeriesReference():
+                yield from _column_problems(reference.column, scene, names, key)
+                yield from _table_problems(reference, f"{key}.table")
+            case LimitReference():
+                yield from _column_problems(reference.column, scene, names, key)
+                yield from _limit_problems(reference, key)
+            case FieldReference():
+                yield from _field_problems(reference, scene, names, key)
+
+
+def _column_problems(column: str, scene: Scene, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    probe = column.partition(".")[0]
+    if probe in names.probes and probe not in scene.probes:
+        return  # the probe itself is refused; its columns are not known
+    columns = [
+        column for name, probe in scene.probes.items() for column in probe.columns(name, scene.dimension)
+    ]
+    if column not in columns:
+        yield unknown_name(f"{key}.column", "probe column", column, columns)
+
+
+def _table_problems(reference: SeriesReference, key: str) -> Iterator[Problem]:
+    table = reference.table
+    if not isinstance(table, InlineTable):
+        return
+    if len(table.time) != len(table.value):
+        message = f"{len(table.value)} values for {len(table.time)} times"
+        yield Problem.at(f"{key}.value", message, f"{len(table.time)} values")
+    if any(later <= earlier for earlier, later in zip(table.time, table.time[1:], strict=False)):
+        yield Problem.at(f"{key}.time", "the times do not increase", "increasing times [s]", list(table.time))
+    if reference.relative_to == "value" and reference.at is None and 0.0 in table.value:
+        message = "an error relative to the value 0 has no meaning"
+        yield Problem.at(
+            f"{key}.value", message, "relative_to: a number greater than 0, or times `at` elsewhere"
+        )
+
+
+def _limit_problems(reference: LimitReference, key: str) -> Iterator[Problem]:
+    low, high = reference.low, reference.high
+    if low is None and high is None:
+        yield Problem.at(key, "neither low nor high is given, so everything passes", "low, high or both")
+    if low is not None and high is not None and low > high:
+        yield Problem.at(f"{key}.low", f"low is above high {high:g}", f"at most {high:g}", low)
+    if reference.window is not None and reference.window[0] >= reference.window[1]:
+        message = "the window ends before it begins"
+        yield Problem.at(f"{key}.window", message, "[first, last] with first < last", list(reference.window))
+
+
+def _field_problems(
+    reference: FieldReference, scene: Scene, names: DeclaredNames, key: str
+) -> Iterator[Problem]:
+    if reference.set not in names.fluids:
+        yield unknown_name(f"{key}.set", "fluid", reference.set, names.fluids)
+    if reference.field == "velocity_z" and scene.dimension == 2:
+        yield no_such_axis(f"{key}.field", reference.field, scene.dimension)
+    variables = (*AXES[: scene.dimension], "t")
+    yield from expression_problems(f"{key}.expression", reference.expression, variables)

@@ -1,0 +1,72 @@
+"""Checks of everything that is neither a set of particles nor compared: time, domain, numerics, output."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from warpsph.scene.checks.common import no_such_axis, repeated_problems
+from warpsph.scene.errors import Problem
+from warpsph.scene.types import AXES
+
+if TYPE_CHECKING:
+    from warpsph.scene.schema import Scene
+
+MAX_FRAMES = 100_000
+MAX_PROBE_SAMPLES = 10_000_000
+
+
+def settings_problems(scene: Scene) -> Iterator[Problem]:
+    """What is wrong with time, numerics and output."""
+    yield from _time_problems(scene)
+    yield from _numerics_problems(scene)
+    yield from repeated_problems("output.fields", scene.output.fields)
+
+
+def _time_problems(scene: Scene) -> Iterator[Problem]:
+    end = scene.time.end
+    frames = end * scene.time.frame_rate
+    if frames > MAX_FRAMES:
+        message = f"{end:g} s at this rate need {frames:.3g} frames; a run writes at most {MAX_FRAMES}"
+        yield Problem.at(
+            "time.frame_rate", message, f"at most {MAX_FRAMES / end:g} 1/s", scene.time.frame_rate
+        )
+    samples = end * (scene.output.probe_rate or 0.0)
+    if samples > MAX_PROBE_SAMPLES:
+        message = f"{end:g} s at this rate need {samples:.3g} probe samples"
+        yield Problem.at(
+            "output.probe_rate", message, f"at most {MAX_PROBE_SAMPLES / end:g} 1/s", scene.output.probe_rate
+        )
+
+
+def domain_problems(scene: Scene) -> Iterator[Problem]:
+    """What is wrong with the domain, wherever the particles are."""
+    for axis, (low, high) in scene.domain.periodic.items():
+        key = f"domain.periodic.{axis}"
+        if axis not in AXES[: scene.dimension]:
+            yield no_such_axis(key, axis, scene.dimension)
+        elif low >= high:
+            yield Problem.at(
+                key, f"low {low:g} is not below high {high:g}", "[low, high] with low < high", [low, high]
+            )
+        elif high - low < 2.0 * scene.support_radius:
+            message = f"the period {high - low:g} m is so short that particles would meet their own images"
+            yield Problem.at(
+                key, message, f"at least twice the support radius, {2 * scene.support_radius:g} m"
+            )
+
+
+def _numerics_problems(scene: Scene) -> Iterator[Problem]:
+    numerics = scene.numerics
+    if numerics.sound_speed != "auto" and numerics.expected_speed is not None:
+        yield Problem.at(
+            "numerics.expected_speed",
+            f"it has no effect beside a given sound_speed of {numerics.sound_speed:g} m/s",
+            "expected_speed with sound_speed: auto, or sound_speed alone",
+            numerics.expected_speed,
+        )
+    if numerics.viscosity.type == "laminar":
+        for name, fluid in scene.fluids.items():
+            if fluid.kinematic_viscosity == 0.0:
+                key = f"fluids.{name}.kinematic_viscosity"
+                yield Problem.at(key, "laminar viscosity needs it", "a number greater than 0, m2/s")

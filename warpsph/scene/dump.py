@@ -1,0 +1,69 @@
+"""A scene as the text of a scene file."""
+
+from __future__ import annotations
+
+import os
+from io import StringIO
+from pathlib import Path
+from typing import Any
+
+from ruamel.yaml import YAML
+from ruamel.yaml.comments import CommentedMap, CommentedSeq
+from ruamel.yaml.representer import RoundTripRepresenter
+
+from warpsph.scene.types import SceneModel
+
+_WIDTH = 110
+
+
+class _Representer(RoundTripRepresenter):
+    """Writes null in full; ruamel leaves an empty place."""
+
+
+_Representer.add_representer(
+    type(None), lambda representer, _: representer.represent_scalar("tag:yaml.org,2002:null", "null")
+)
+
+
+def to_yaml(scene: SceneModel, base_directory: Path, directory: Path | None) -> str:
+    """Text with every key of the scene, defaults filled in.
+
+    Relative file names count from `base_directory`; where a `directory` is given, they are rewritten to count
+    from there.
+    """
+    yaml = YAML()
+    yaml.Representer = _Representer
+    yaml.width = _WIDTH
+    data = scene.model_dump()
+    if directory is not None:
+        data = _moved(data, base_directory.resolve(), directory.resolve())
+    stream = StringIO()
+    yaml.dump(_styled(data), stream)
+    return stream.getvalue()
+
+
+def _moved(data: Any, origin: Path, destination: Path) -> Any:
+    """The data with the file names under every key `file` relative to the destination."""
+    if isinstance(data, dict):
+        return {
+            key: os.path.relpath(origin / value, destination)
+            if key == "file" and isinstance(value, str) and not Path(value).is_absolute()
+            else _moved(value, origin, destination)
+            for key, value in data.items()
+        }
+    return [_moved(item, origin, destination) for item in data] if isinstance(data, list | tuple) else data
+
+
+def _styled(data: Any) -> Any:
+    """Mappings in block style with `type` first, lists of plain values on one line."""
+    if isinstance(data, dict):
+        keys = sorted(data, key=lambda key: key != "type")
+        return CommentedMap((key, _styled(data[key])) for key in keys)
+    if isinstance(data, list | tuple):
+        items = CommentedSeq(_styled(item) for item in data)
+        if not any(isinstance(item, CommentedMap) for item in items):
+            items.fa.set_flow_style()
+        return items
+    if isinstance(data, float):
+        return float(data)
+    return data

@@ -1,0 +1,134 @@
+"""Quantities sampled over time; each becomes columns `name.quantity[unit]` of probes.csv.
+
+In two dimensions integrals are per metre of depth, and their units say so.
+"""
+
+from __future__ import annotations
+
+from typing import Annotated, Literal
+
+from pydantic import Field
+
+from warpsph.scene.types import AXES, Axis, Name, PositiveReal, Real, SceneModel, Vector
+
+PointField = Literal["pressure", "velocity", "density"]
+
+
+class _Probe(SceneModel):
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        """Column names without the probe's own, in a scene of that dimension."""
+        raise NotImplementedError
+
+    def columns(self, name: str, dimension: int) -> tuple[str, ...]:
+        """Columns that a probe of that name writes, such as front.position[m]."""
+        return tuple(f"{name}.{quantity}" for quantity in self.quantities(dimension))
+
+
+class FrontProbe(_Probe):
+    """Largest coordinate that fluid has reached along an axis."""
+
+    type: Literal["front"] = "front"
+    axis: Axis
+    """Direction of travel."""
+
+    fluid: Name | None = None
+    """One fluid only; null: all fluids. Default: null."""
+
+    origin: Real = 0.0
+    """Coordinate that counts as zero [m]. Default: 0."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("position[m]",)
+
+
+class WaterLevelProbe(_Probe):
+    """Height of the free surface at a vertical gauge."""
+
+    type: Literal["water_level"] = "water_level"
+    at: Annotated[tuple[Real, ...], Field(min_length=1, max_length=2)]
+    """Place of the gauge: its coordinates [m] in the axes other than `axis`, in the order x, y, z."""
+
+    axis: Literal["auto", "x", "y", "z"] = "auto"
+    """Axis along which the level is measured; auto: the axis of gravity. Default: auto."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("level[m]",)
+
+
+class WallPressureProbe(_Probe):
+    """Mean pressure on the wall particles near a point."""
+
+    type: Literal["wall_pressure"] = "wall_pressure"
+    boundary: Name
+    """The boundary that carries the gauge."""
+
+    at: Vector
+    """Centre of the gauge [m]."""
+
+    radius: PositiveReal
+    """Wall particles within this distance count [m]."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("pressure[Pa]",)
+
+
+class PointProbe(_Probe):
+    """Fluid fields at a fixed point, by consistent interpolation."""
+
+    type: Literal["point"] = "point"
+    at: Vector
+    """The point [m]."""
+
+    fields: Annotated[tuple[PointField, ...], Field(min_length=1)] = ("pressure", "velocity")
+    """What to interpolate: pressure [Pa], velocity [m/s], density [kg/m3]. Default: pressure and velocity."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        columns = {
+            "pressure": ("pressure[Pa]",),
+            "velocity": tuple(f"velocity_{axis}[m/s]" for axis in AXES[:dimension]),
+            "density": ("density[kg/m3]",),
+        }
+        return tuple(column for field in self.fields for column in columns[field])
+
+
+class ForceProbe(_Probe):
+    """Force and torque of the fluid on a boundary."""
+
+    type: Literal["force"] = "force"
+    boundary: Name
+    """The boundary on which the fluid acts."""
+
+    about: Vector | None = None
+    """Point about which the torque is taken [m]; null: the boundary's centre of mass at
+    the start. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        if dimension == 2:
+            return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
+        forces = tuple(f"force_{axis}[N]" for axis in AXES)
+        return forces + tuple(f"torque_{axis}[N m]" for axis in AXES)
+
+
+class EnergyProbe(_Probe):
+    """Energies of all fluids together."""
+
+    type: Literal["energy"] = "energy"
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "J/m" if dimension == 2 else "J"
+        return tuple(f"{energy}[{unit}]" for energy in ("kinetic", "potential", "compression"))
+
+
+class VolumeProbe(_Probe):
+    """Volume (sum of m/rho) and number of particles of all fluids together."""
+
+    type: Literal["volume"] = "volume"
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return (f"volume[m{dimension}]", "particles[1]")
+
+
+Probe = Annotated[
+    FrontProbe | WaterLevelProbe | WallPressureProbe | PointProbe | ForceProbe | EnergyProbe | VolumeProbe,
+    Field(discriminator="type"),
+]

@@ -1,0 +1,255 @@
+"""The scene: everything that defines a run, as plain data with units.
+
+The attribute names are the keys of the scene file. Objects are immutable; a scene that cannot be run is
+refused when it is built, from a file as from Python.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
+
+from warpsph.scene.checks import scene_problems
+from warpsph.scene.document import Document, placed
+from warpsph.scene.dump import to_yaml
+from warpsph.scene.errors import SceneError
+from warpsph.scene.expressions import Expression
+from warpsph.scene.motion import Motion
+from warpsph.scene.numerics import Numerics
+from warpsph.scene.probes import Probe
+from warpsph.scene.references import Reference
+from warpsph.scene.shapes import Bounds, Shape
+from warpsph.scene.types import (
+    Axis,
+    FileName,
+    Flag,
+    Name,
+    NonNegativeReal,
+    PositiveInteger,
+    PositiveReal,
+    Real,
+    SceneModel,
+    Vector,
+)
+
+Face = Literal["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
+OutputField = Literal["velocity", "density", "pressure", "mass"]
+_NAMED = Field(json_schema_extra={"additionalProperties": False})
+
+
+class Domain(SceneModel):
+    """Where particles may be; without it, everywhere."""
+
+    periodic: Mapping[Axis, tuple[Real, Real]] = {}
+    """Axes that wrap round, each with its [low, high] coordinates [m]. Default: none."""
+
+    kill_box: Bounds | None = None
+    """Particles that leave this box are removed and counted. Default: null."""
+
+
+class Time(SceneModel):
+    """How long, how often written, in which steps."""
+
+    end: PositiveReal
+    """Simulated time [s]."""
+
+    frame_rate: PositiveReal
+    """Frames a simulated second [1/s]."""
+
+    cfl: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.5
+    """Fraction of the stability limits that a step may take [1]. Default: 0.5."""
+
+    max_step: PositiveReal | None = None
+    """Upper limit of the step [s]; null: only the stability limits. Default: null."""
+
+
+class HydrostaticPressure(SceneModel):
+    """Initial pressure density * |gravity| * depth below the free surface."""
+
+    type: Literal["hydrostatic"] = "hydrostatic"
+    surface: Literal["auto"] | Real = "auto"
+    """Free surface as a coordinate along -gravity [m]; auto: the top of this fluid. Default: auto."""
+
+
+class UniformPressure(SceneModel):
+    """The same initial pressure everywhere."""
+
+    type: Literal["uniform"] = "uniform"
+    value: Real
+    """Pressure [Pa]."""
+
+
+InitialPressure = Annotated[HydrostaticPressure | UniformPressure, Field(discriminator="type")]
+InitialVelocity = Annotated[tuple[Real | Expression, ...], Field(min_length=2, max_length=3)]
+
+
+class Fluid(SceneModel):
+    """A body of liquid."""
+
+    shape: Shape
+    """Where it is at the start."""
+
+    density: PositiveReal
+    """Reference density [kg/m3]."""
+
+    kinematic_viscosity: NonNegativeReal = 0.0
+    """Used by laminar viscosity [m2/s]. Default: 0."""
+
+    velocity: InitialVelocity | None = None
+    """Initial velocity [m/s]; each component is a number or an expression in x, y, z [m]; null: at rest.
+    Default: null."""
+
+    pressure: InitialPressure = HydrostaticPressure()
+    """Initial pressure. Default: {type: hydrostatic, surface: auto}."""
+
+
+class Boundary(SceneModel):
+    """A wall, fixed or moved by a prescribed law."""
+
+    shape: Shape
+    """The body whose surface is the wall."""
+
+    side: Literal["outside", "inside", "solid"]
+    """outside: wall particles lie outside the surface, fluid inside (a tank); inside: layers just inside the
+    surface (an obstacle); solid: the whole inside is filled."""
+
+    layers: Literal["auto"] | PositiveInteger = "auto"
+    """Layers of wall particles [1]; auto: as many as the support radius needs. Default: auto."""
+
+    open: tuple[Face, ...] = ()
+    """Faces of a box that carry no wall: x_min, x_max, y_min, y_max, z_min, z_max. Default: none."""
+
+    slip: Literal["free_slip", "no_slip"] = "free_slip"
+    """Tangential condition on the fluid. Default: free_slip."""
+
+    motion: tuple[Motion, ...] = ()
+    """Prescribed motions, applied in the order of the list; empty: fixed. Default: empty."""
+
+
+class Output(SceneModel):
+    """What a run leaves behind."""
+
+    directory: FileName | None = None
+    """Run directory; null: out/ and the scene's name. Default: null."""
+
+    probe_rate: PositiveReal | None = None
+    """Probe samples a simulated second [1/s]; null: the frame rate. Default: null."""
+
+    usd: Flag = True
+    """Write particles.usdc. Default: true."""
+
+    hdf5: Flag = False
+    """Write frames.h5. Default: false."""
+
+    fields: tuple[OutputField, ...] = ("velocity", "density", "pressure")
+    """Fields in the frames beside position and id: velocity, density, pressure, mass.
+    Default: velocity, density, pressure."""
+
+    checkpoint_every: PositiveInteger | None = None
+    """Frames between checkpoints [1]; null: about every tenth of the run, and at the end. Default: null."""
+
+
+class Validation(SceneModel):
+    """How `warpsph validate` runs this scene."""
+
+    resolutions: Annotated[tuple[PositiveReal, ...], Field(min_length=1)]
+    """Particle spacings [m]."""
+
+    quick: tuple[PositiveReal, ...] = ()
+    """Particle spacings [m] of the quick tier; empty: the coarsest of resolutions. Default: empty."""
+
+    set: Mapping[str, Any] = {}
+    """Overrides of the scene for these runs, such as {time.end: 2.0}. Default: none."""
+
+
+class Scene(SceneModel):
+    """Everything that defines a run."""
+
+    name: Annotated[str, Field(pattern=r"^[a-z][a-z0-9_]*$")]
+    """Lower-case letters, digits and underscores; names the run directory."""
+
+    description: str = ""
+    """What the scene shows. Default: empty."""
+
+    dimension: Literal[2, 3]
+    """2 (unit depth) or 3; every vector of the scene has as many components."""
+
+    spacing: PositiveReal
+    """Particle spacing dp [m]."""
+
+    gravity: Vector = Field(default_factory=lambda data: (0.0,) * data["dimension"])
+    """Acceleration of gravity [m/s2]. Default: zero."""
+
+    domain: Domain = Domain()
+    """Where particles may be. Default: everywhere."""
+
+    time: Time
+    """Duration, frames and steps."""
+
+    numerics: Numerics = Numerics()
+    """The scheme. Default: every default of its keys."""
+
+    fluids: Annotated[Mapping[Name, Fluid], Field(min_length=1), _NAMED]
+    """Bodies of fluid by name."""
+
+    boundaries: Annotated[Mapping[Name, Boundary], _NAMED] = {}
+    """Walls by name. Default: none."""
+
+    probes: Annotated[Mapping[Name, Probe], _NAMED] = {}
+    """Quantities sampled over time, by name. Default: none."""
+
+    output: Output = Output()
+    """What a run leaves behind. Default: every default of its keys."""
+
+    references: Annotated[Mapping[Name, Reference], _NAMED] = {}
+    """What the result is compared with, by name. Default: none."""
+
+    validation: Validation | None = None
+    """How `warpsph validate` runs this scene; null: as it stands. Default: null."""
+
+    _base_directory: Path = PrivateAttr(default_factory=Path.cwd)
+    _document: Document | None = PrivateAttr(default=None)
+
+    @model_validator(mode="after")
+    def _refuse_nonsense(self, info: ValidationInfo) -> Scene:
+        problems = list(scene_problems(self, info.context))
+        if problems:
+            raise SceneError(problems)
+        return self
+
+    @property
+    def base_directory(self) -> Path:
+        """Directory from which relative file names of the scene are resolved."""
+        return self._base_directory
+
+    @property
+    def support_radius(self) -> float:
+        """Radius of the kernel's support [m]."""
+        return self.numerics.support_over_h * self.numerics.h_over_dp * self.spacing
+
+    def read_from(self, directory: Path, document: Document | None = None) -> Scene:
+        """The same scene with relative file names counted from a directory, and the text it came from."""
+        scene = self.model_copy()
+        scene._base_directory, scene._document = directory, document
+        return scene
+
+    def located(self, error: SceneError) -> SceneError:
+        """The error of a later stage with the lines of the scene file, if the scene was read from one."""
+        document = self._document
+        if document is None:
+            return error
+        return SceneError(placed(problem, document) for problem in error.problems)
+
+    def to_yaml(self, directory: Path | None = None) -> str:
+        """Text of a scene file that gives this scene again, with every default written out.
+
+        Where a `directory` is given, relative file names are rewritten so that the text can stand there.
+        """
+        return to_yaml(self, self.base_directory, directory)
+
+    def __eq__(self, other: object) -> bool:
+        """Whether the data are equal, wherever the scenes come from."""
+        return isinstance(other, Scene) and self.model_dump() == other.model_dump()

@@ -1,0 +1,349 @@
+"""Shapes of fluids, walls and structures: solids described by their surface, and their combinations."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from itertools import pairwise
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, ValidationInfo, field_validator, model_validator
+
+from warpsph.scene.errors import Problem
+from warpsph.scene.types import Axis, Components, PositiveReal, Real, SceneModel, Vector, Vector2, Vector3
+
+
+class ShapeModel(SceneModel):
+    """Base of all shapes."""
+
+    def parts(self) -> Iterator[tuple[str, Shape]]:
+        """The shapes that this one is made of, each with its key relative to this shape."""
+        yield from ()
+
+    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
+        """What, beside the length of its vectors, cannot stand in this dimension; keys are relative."""
+        for key, part in self.parts():
+            for problem in part.dimension_problems(dimension):
+                yield replace(problem, key=f"{key}.{problem.key}")
+
+    def _exists_only_in(self, required: int, dimension: int, instead: str) -> Iterator[Problem]:
+        kind = getattr(self, "type")  # noqa: B009 (each shape declares its own literal)
+        if dimension != required:
+            message = f"a {kind} exists only where dimension is {required}"
+            yield Problem.at("type", message, f"{instead} where dimension is {dimension}", kind)
+
+
+class Bounds(SceneModel):
+    """A region with faces along the axes, given by two opposite corners."""
+
+    min: Vector
+    """Corner with the smallest coordinates [m]."""
+    max: Vector
+    """Corner with the largest coordinates [m]; greater than `min` in every component."""
+
+    @field_validator("max")
+    @classmethod
+    def _greater_than_min(cls, high: Components, info: ValidationInfo) -> Components:
+        return _checked_upper_corner(info.data.get("min"), high)
+
+
+class Box(ShapeModel):
+    """A box with faces along the axes (a rectangle in two dimensions)."""
+
+    type: Literal["box"] = "box"
+    min: Vector
+    """Corner with the smallest coordinates [m]."""
+    max: Vector
+    """Corner with the largest coordinates [m]; greater than `min` in every component."""
+
+    @field_validator("max")
+    @classmethod
+    def _greater_than_min(cls, high: Components, info: ValidationInfo) -> Components:
+        return _checked_upper_corner(info.data.get("min"), high)
+
+
+class Sphere(ShapeModel):
+    """A sphere (a disc in two dimensions)."""
+
+    type: Literal["sphere"] = "sphere"
+    center: Vector
+    """Centre [m]."""
+    radius: PositiveReal
+    """Radius [m]."""
+
+
+class Cylinder(ShapeModel):
+    """A circular cylinder with flat ends; three dimensions only."""
+
+    type: Literal["cylinder"] = "cylinder"
+    start: Vector3
+    """Centre of the one end [m]."""
+    end: Vector3
+    """Centre of the other end [m]; differs from `start`."""
+    radius: PositiveReal
+    """Radius [m]."""
+
+    @field_validator("end")
+    @classmethod
+    def _away_from_start(cls, end: Vector3, info: ValidationInfo) -> Vector3:
+        if end == info.data.get("start"):
+            raise ValueError("end equals start, so the cylinder has no length")
+        return end
+
+    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
+        return self._exists_only_in(3, dimension, "a sphere (which is a disc)")
+
+
+class Polygon(ShapeModel):
+    """The inside of a closed polygon; two dimensions only."""
+
+    type: Literal["polygon"] = "polygon"
+    points: Annotated[tuple[Vector2, ...], Field(min_length=3)]
+    """Corners in order [m]; the last is joined to the first; edges must not cross or touch."""
+
+    @field_validator("points")
+    @classmethod
+    def _simple(cls, points: tuple[Vector2, ...]) -> tuple[Vector2, ...]:
+        return _checked_polygon(points)
+
+    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
+        return self._exists_only_in(2, dimension, "an extrusion")
+
+
+class Extrusion(ShapeModel):
+    """A prism: a polygon extended along an axis; three dimensions only."""
+
+    type: Literal["extrusion"] = "extrusion"
+    points: Annotated[tuple[Vector2, ...], Field(min_length=3)]
+    """Corners of the cross-section [m]: (y, z) for axis x, (x, z) for axis y, (x, y) for axis z."""
+    axis: Axis
+    """Axis along which the polygon is extended."""
+    low: Real
+    """Smallest coordinate along the axis [m]."""
+    high: Real
+    """Largest coordinate along the axis [m]; greater than `low`."""
+
+    @field_validator("points")
+    @classmethod
+    def _simple(cls, points: tuple[Vector2, ...]) -> tuple[Vector2, ...]:
+        return _checked_polygon(points)
+
+    @field_validator("high")
+    @classmethod
+    def _greater_than_low(cls, high: float, info: ValidationInfo) -> float:
+        low = info.data.get("low")
+        if low is not None and high <= low:
+            raise ValueError(f"high must be greater than low = {low:g}")
+        return high
+
+    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
+        return self._exists_only_in(3, dimension, "a polygon")
+
+
+class Plane(ShapeModel):
+    """The half-space behind a plane.
+
+    A floor is a plane with its normal upwards and `side: inside`: layers behind the plane, fluid before it.
+    """
+
+    type: Literal["plane"] = "plane"
+    point: Vector
+    """Any point of the plane [m]."""
+    normal: Vector
+    """Direction out of the half-space; its length does not matter."""
+    bounds: Bounds | None = None
+    """Extent of a wall: layers where the nearest point of the plane lies in this region. Default: null."""
+
+    @field_validator("normal")
+    @classmethod
+    def _not_zero(cls, normal: Components) -> Components:
+        _refuse_zero(normal, "the normal")
+        return normal
+
+
+class Union(ShapeModel):
+    """Everything that lies in any of the shapes."""
+
+    type: Literal["union"] = "union"
+    shapes: Annotated[tuple[Shape, ...], Field(min_length=1)]
+    """The shapes to unite."""
+
+    def parts(self) -> Iterator[tuple[str, Shape]]:
+        return _indexed("shapes", self.shapes)
+
+
+class Intersection(ShapeModel):
+    """What all the shapes have in common."""
+
+    type: Literal["intersection"] = "intersection"
+    shapes: Annotated[tuple[Shape, ...], Field(min_length=1)]
+    """The shapes to intersect."""
+
+    def parts(self) -> Iterator[tuple[str, Shape]]:
+        return _indexed("shapes", self.shapes)
+
+
+class Difference(ShapeModel):
+    """A shape with others cut out of it."""
+
+    type: Literal["difference"] = "difference"
+    base: Shape
+    """The shape to cut from."""
+    subtract: Annotated[tuple[Shape, ...], Field(min_length=1)]
+    """The shapes to take away."""
+
+    def parts(self) -> Iterator[tuple[str, Shape]]:
+        yield "base", self.base
+        yield from _indexed("subtract", self.subtract)
+
+
+class Rotation(SceneModel):
+    """A turn about a fixed point (and, in three dimensions, about an axis through it)."""
+
+    angle: Real
+    """Angle [degrees], counter-clockwise in two dimensions, right-handed about `axis` in three."""
+    axis: Vector3 | None = None
+    """Direction of the axis, of any length; required in three dimensions, left out in two."""
+    center: Vector | None = None
+    """Fixed point [m]; null: the origin. Default: null."""
+
+    @field_validator("axis")
+    @classmethod
+    def _not_zero(cls, axis: Vector3 | None) -> Vector3 | None:
+        if axis is not None:
+            _refuse_zero(axis, "the axis")
+        return axis
+
+    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
+        """A rotation needs its axis in three dimensions and has none in two; keys are relative."""
+        yield from axis_problems(self.axis, dimension)
+
+
+class Transform(ShapeModel):
+    """A shape scaled about the origin, then rotated, then translated."""
+
+    type: Literal["transform"] = "transform"
+    shape: Shape
+    """The shape to move."""
+    scale: PositiveReal = 1.0
+    """Factor on all lengths, about the origin [1]. Default: 1."""
+    rotate: Rotation | None = None
+    """Rotation, after scaling. Default: none."""
+    translate: Vector | None = None
+    """Displacement [m], after scaling and rotating. Default: none."""
+
+    @model_validator(mode="after")
+    def _does_something(self) -> Self:
+        if self.scale == 1.0 and self.rotate is None and self.translate is None:
+            raise ValueError("a transform needs at least one of scale, rotate and translate")
+        return self
+
+    def parts(self) -> Iterator[tuple[str, Shape]]:
+        yield "shape", self.shape
+
+    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
+        yield from super().dimension_problems(dimension)
+        if self.rotate is not None:
+            for problem in self.rotate.dimension_problems(dimension):
+                yield replace(problem, key=f"rotate.{problem.key}")
+
+
+Shape = Annotated[
+    Box | Sphere | Cylinder | Polygon | Extrusion | Plane | Union | Intersection | Difference | Transform,
+    Field(discriminator="type"),
+]
+"""A solid, chosen by `type`."""
+
+for _model in (Union, Intersection, Difference, Transform):
+    _model.model_rebuild()
+
+
+def axis_problems(axis: Vector3 | None, dimension: int) -> Iterator[Problem]:
+    """The problem of a rotation axis that is missing in three dimensions or given in two."""
+    if dimension == 3 and axis is None:
+        yield Problem.at("axis", "a rotation in three dimensions needs its axis", "three numbers")
+    if dimension == 2 and axis is not None:
+        yield Problem.at("axis", "a rotation in two dimensions has no axis", "leave it out", axis)
+
+
+def _indexed(key: str, shapes: Sequence[Shape]) -> Iterator[tuple[str, Shape]]:
+    return ((f"{key}.{index}", shape) for index, shape in enumerate(shapes))
+
+
+def _refuse_zero(vector: Sequence[float], name: str) -> None:
+    if math.hypot(*vector) == 0.0:
+        raise ValueError(f"{name} must not be zero")
+
+
+def _checked_upper_corner(low: Components | None, high: Components) -> Components:
+    """`high`, after a check against the lower corner (None where that was refused itself)."""
+    if low is None:
+        return high
+    if len(low) != len(high):
+        raise ValueError(f"max has {len(high)} components and min has {len(low)}")
+    for axis, lower, upper in zip("xyz", low, high, strict=False):
+        if upper <= lower:
+            raise ValueError(f"max must be greater than min in {axis}, but {upper:g} <= {lower:g}")
+    return high
+
+
+def _checked_polygon(points: tuple[Vector2, ...]) -> tuple[Vector2, ...]:
+    edges = list(pairwise((*points, points[0])))
+    for index, (start, end) in enumerate(edges):
+        if start == end:
+            follower = (index + 1) % len(points)
+            raise ValueError(f"points {index} and {follower} coincide (the polygon closes by itself)")
+    crossing = _crossing_edges(edges)
+    if crossing is not None:
+        raise ValueError("the polygon cuts or touches itself: edges {} and {} meet".format(*crossing))
+    return points
+
+
+_Edge = tuple[Vector2, Vector2]
+
+
+def _crossing_edges(edges: list[_Edge]) -> tuple[int, int] | None:
+    """Indices of two edges that share more than a common corner; None where the polygon is simple."""
+    order = sorted(range(len(edges)), key=lambda index: min(edges[index][0][0], edges[index][1][0]))
+    for place, i in enumerate(order):
+        right_end = max(edges[i][0][0], edges[i][1][0])
+        for j in order[place + 1 :]:
+            if min(edges[j][0][0], edges[j][1][0]) > right_end:
+                break
+            if _edges_meet(edges, i, j):
+                return min(i, j), max(i, j)
+    return None
+
+
+def _edges_meet(edges: list[_Edge], i: int, j: int) -> bool:
+    if (i + 1) % len(edges) == j:
+        return _folds_back(edges[i], edges[j])
+    if (j + 1) % len(edges) == i:
+        return _folds_back(edges[j], edges[i])
+    (a, b), (c, d) = edges[i], edges[j]
+    sides = (_side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b))
+    if sides[0] * sides[1] < 0.0 and sides[2] * sides[3] < 0.0:
+        return True
+    return any(
+        side == 0.0 and _within(point, edge)
+        for side, point, edge in zip(sides, (c, d, a, b), ((a, b), (a, b), (c, d), (c, d)), strict=True)
+    )
+
+
+def _folds_back(first: _Edge, second: _Edge) -> bool:
+    """Whether the second of two consecutive edges runs back over the first."""
+    (a, b), (_, c) = first, second
+    backwards = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
+    return backwards and _side(a, b, c) == 0.0
+
+
+def _side(a: Vector2, b: Vector2, point: Vector2) -> float:
+    """Positive to the left of the line from a to b, negative to its right, zero on it."""
+    return (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
+
+
+def _within(point: Vector2, edge: _Edge) -> bool:
+    """Whether a point of the edge's line lies between the edge's ends."""
+    (a, b) = edge
+    return all(min(a[k], b[k]) <= point[k] <= max(a[k], b[k]) for k in range(2))

@@ -1,0 +1,72 @@
+"""Numbers, vectors and names from which every part of a scene is built."""
+
+from __future__ import annotations
+
+from typing import Annotated, Any, Literal
+
+from pydantic import AfterValidator, AllowInfNan, BaseModel, ConfigDict, Field, Strict
+
+
+def _require_type(schema: dict[str, Any]) -> None:
+    """A file must say the type of a tagged object, though Python's constructors know it."""
+    required = schema.get("required", [])
+    if "type" in schema.get("properties", {}) and "type" not in required:
+        schema["required"] = ["type", *required]
+
+
+class SceneModel(BaseModel):
+    """Base of every object of a scene: immutable, and every key must be known.
+
+    The string below an attribute is its description in the JSON schema.
+    """
+
+    model_config = ConfigDict(
+        frozen=True, extra="forbid", use_attribute_docstrings=True, json_schema_extra=_require_type
+    )
+
+
+class Components(tuple[float, ...]):
+    """Value of a `Vector`: the scene refuses it unless it has one component a dimension."""
+
+    __slots__ = ()
+
+
+Real = Annotated[float, Strict(), AllowInfNan(False)]
+"""A finite number."""
+
+PositiveReal = Annotated[Real, Field(gt=0.0)]
+"""A finite number greater than zero."""
+
+NonNegativeReal = Annotated[Real, Field(ge=0.0)]
+"""A finite number, zero or greater."""
+
+Integer = Annotated[int, Strict()]
+"""A whole number (true and false are not)."""
+
+PositiveInteger = Annotated[Integer, Field(ge=1)]
+"""A whole number, one or greater."""
+
+Flag = Annotated[bool, Strict()]
+"""true or false."""
+
+Vector = Annotated[tuple[Real, ...], Field(min_length=2, max_length=3), AfterValidator(Components)]
+"""As many components as the scene has dimensions."""
+
+Vector2 = tuple[Real, Real]
+"""Two components in scenes of either dimension."""
+
+Vector3 = tuple[Real, Real, Real]
+"""Three components in scenes of either dimension."""
+
+Axis = Literal["x", "y", "z"]
+"""A coordinate axis; z exists in three dimensions only."""
+
+AXES: tuple[Axis, ...] = ("x", "y", "z")
+
+Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
+"""Name of an object of the scene: safe in columns of CSV files and as a USD prim."""
+
+NAME_RULE = "a letter, then letters, digits and underscores"
+
+FileName = Annotated[str, Field(min_length=1)]
+"""A file, relative to the directory of the scene file."""
