@@ -74,7 +74,7 @@ def test_box_in_turned_axes() -> None:
     st.tuples(*[st.floats(-2.0, 2.0)] * 3).filter(lambda axis: np.linalg.norm(axis) > 0.1),
 )
 def test_rotation_matrix_is_a_rotation_about_its_axis(angle: float, axis: tuple[float, float, float]) -> None:
-    """It keeps its axis, is orthogonal, and turns by the angle: trace = 1 + 2 cos, in the right-handed sense."""
+    """It keeps its axis, is orthogonal, and its trace is 1 + 2 cos(angle), in the right-handed sense."""
     matrix = rotation_matrix(angle, axis, 3)
     assert matrix @ axis == pytest.approx(np.array(axis), abs=1e-12)
     assert matrix @ matrix.T == pytest.approx(np.eye(3), abs=1e-12)

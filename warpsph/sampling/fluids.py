@@ -1,0 +1,54 @@
+"""Initial state of the fluids on their lattice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.expressions import evaluate
+from warpsph.scene.schema import Fluid
+from warpsph.scene.types import AXES
+
+
+def initial_velocity(fluid: Fluid, position: np.ndarray, key: str) -> np.ndarray:
+    """Velocity (n, dimension) [m/s] at positions (n, dimension) [m], from numbers or expressions in x, y, z.
+
+    Raises SceneError, naming the fluid's `key`, where an expression is not a finite number.
+    """
+    if fluid.velocity is None:
+        return np.zeros_like(position)
+    coordinates = dict(zip(AXES, position.T, strict=False))
+    velocity = np.empty_like(position)
+    for component, value in enumerate(fluid.velocity):
+        velocity[:, component] = evaluate(value, coordinates) if isinstance(value, str) else value
+        undefined = ~np.isfinite(velocity[:, component])
+        if undefined.any():
+            at = ", ".join(f"{x:g}" for x in position[undefined][0])
+            message = f"it is not a finite number at {undefined.sum()} particles, first at ({at})"
+            problem = Problem.at(
+                f"{key}.velocity.{component}", message, "finite everywhere in the fluid", value
+            )
+            raise SceneError([problem])
+    return velocity
+
+
+def initial_pressure(
+    fluid: Fluid, position: np.ndarray, gravity: Sequence[float], spacing: float
+) -> np.ndarray:
+    """Pressure (n,) [Pa] at positions (n, dimension) [m]: uniform, or rho |g| depth and never below zero.
+
+    Depth counts against gravity from the free surface: as given, or the top of the highest cell of the fluid.
+    """
+    if fluid.pressure.type == "uniform":
+        return np.full(len(position), fluid.pressure.value)
+    strength = float(np.linalg.norm(gravity))
+    if strength == 0.0 or len(position) == 0:
+        return np.zeros(len(position))
+    up = -np.array(gravity) / strength
+    elevation = position @ up
+    surface = fluid.pressure.surface
+    if surface == "auto":
+        surface = elevation.max() + 0.5 * spacing * np.abs(up).sum()
+    return fluid.density * strength * np.maximum(surface - elevation, 0.0)

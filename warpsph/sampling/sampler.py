@@ -1,0 +1,101 @@
+"""From a scene to its particles."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+import numpy as np
+
+from warpsph.sampling.checks import (
+    empty_problems,
+    geometry_problems,
+    overlap_problems,
+    wall_conflict_problems,
+)
+from warpsph.sampling.contact import clear_of_wall
+from warpsph.sampling.fluids import initial_pressure, initial_velocity
+from warpsph.sampling.kinematics import rigid_motions
+from warpsph.sampling.lattice import Lattice, cells_inside
+from warpsph.sampling.packing import CLOSEST, away_from
+from warpsph.sampling.scene_lattices import lattices_of
+from warpsph.sampling.sets import SampledSet
+from warpsph.sampling.walls import layer_count, period_of, sample_wall
+from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.schema import Scene
+
+Positions = Mapping[str, np.ndarray]
+"""Positions (n, dimension) [m] of the particles of each set."""
+
+
+def sample(scene: Scene) -> tuple[SampledSet, ...]:
+    """The particles of a scene, fluids first, then boundaries, in the order of the scene.
+
+    Raises SceneError with all problems of a scene whose shapes cannot be filled or do not fit together.
+    """
+    _refuse(geometry_problems(scene))
+    lattices = lattices_of(scene)
+    walls = _walls(scene, lattices)
+    cells = {
+        name: cells_inside(lattices[name], fluid.shape).positions() for name, fluid in scene.fluids.items()
+    }
+    _refuse(wall_conflict_problems(scene, cells, walls))
+    fluids = {name: _clear_of_walls(scene, points, walls) for name, points in cells.items()}
+    _refuse([*empty_problems("fluids", fluids), *empty_problems("boundaries", walls)])
+    _refuse(overlap_problems(fluids, scene.spacing))
+    return (*_fluid_sets(scene, fluids), *_boundary_sets(scene, walls))
+
+
+def _refuse(problems: Iterable[Problem]) -> None:
+    found = list(problems)
+    if found:
+        raise SceneError(found)
+
+
+def _walls(scene: Scene, lattices: Mapping[str, Lattice]) -> Positions:
+    """Wall particles; where walls overlap that move alike, those of the later one are left out."""
+    support = scene.support_radius / scene.spacing
+    walls: dict[str, np.ndarray] = {}
+    for name, boundary in scene.boundaries.items():
+        points = sample_wall(boundary, lattices[name], layer_count(boundary, support), period_of(scene))
+        for earlier, others in walls.items():
+            if scene.boundaries[earlier].motion == boundary.motion:
+                points = away_from(points, others, CLOSEST * scene.spacing)
+        walls[name] = points
+    return walls
+
+
+def _clear_of_walls(scene: Scene, points: np.ndarray, walls: Positions) -> np.ndarray:
+    for name, boundary in scene.boundaries.items():
+        points = clear_of_wall(points, boundary, walls[name], scene.spacing)
+    return points
+
+
+def _fluid_sets(scene: Scene, fluids: Positions) -> list[SampledSet]:
+    volume = scene.spacing**scene.dimension
+    return [
+        SampledSet(
+            name=name,
+            kind="fluid",
+            position=position,
+            velocity=initial_velocity(scene.fluids[name], position, f"fluids.{name}"),
+            pressure=initial_pressure(scene.fluids[name], position, scene.gravity, scene.spacing),
+            volume=volume,
+        )
+        for name, position in fluids.items()
+    ]
+
+
+def _boundary_sets(scene: Scene, walls: Positions) -> list[SampledSet]:
+    motions = rigid_motions(scene)
+    volume = scene.spacing**scene.dimension
+    return [
+        SampledSet(
+            name=name,
+            kind="boundary",
+            position=position,
+            velocity=motions[name](0.0).velocity_of(position) if name in motions else np.zeros_like(position),
+            pressure=np.zeros(len(position)),
+            volume=volume,
+        )
+        for name, position in walls.items()
+    ]
