@@ -76,6 +76,17 @@ def test_wall_force_is_the_opposite_of_what_the_fluid_receives():
     assert received == pytest.approx(-tank.fields["force"].sum(axis=0), abs=1e-12 * scale)
 
 
+def test_a_step_advances_the_time_by_its_report():
+    sim = Simulation(still_tank(), device="cpu")
+    for target in (None, 0.01):
+        if target:
+            sim.advance(target)
+        before = sim.time
+        report = sim.step()
+        assert report.dt > 0.0
+        assert sim.time == before + report.dt
+
+
 def test_advance_lands_exactly():
     sim = Simulation(still_tank(), device="cpu")
     for until in (0.01, 0.0123456789, 0.02):

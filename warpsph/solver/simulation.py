@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
@@ -139,8 +140,11 @@ class Simulation:
     def steps_until(self, until: float) -> Iterator[StepReport]:
         """Make the steps to a time [s] one by one, and yield the report of each."""
         self._stepper.set_clock(TARGET=until)
-        while self.time < until:
-            yield self.step()
+        try:
+            while self.time < until:
+                yield self.step()
+        finally:
+            self._stepper.set_clock(TARGET=math.inf)
 
     def run(self) -> None:
         """Advance to the end of the scene and call the frame callbacks at every frame, the first included."""

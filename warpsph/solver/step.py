@@ -6,6 +6,7 @@ order, reversible for sound waves, and with one force sum and one continuity sum
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,7 +43,7 @@ class Stepper:
 
     def start(self, time: float = 0.0) -> None:
         """Place walls, make the first lists, and find the density rate of the initial velocity."""
-        self.set_clock(TIME=time, STEP=0.0)
+        self.set_clock(TIME=time, STEP=0.0, TARGET=math.inf)
         if self._walls:
             self._walls.place(time)
         self._search.take_positions([True] * len(self._search.tables))

@@ -1,0 +1,88 @@
+"""`warpsph validate`: rows, verdicts and exit codes."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import fake_runs
+import pytest
+from fake_runs import raising, run_that
+from typer.testing import Result
+
+Command = Callable[..., Result]
+
+
+@pytest.fixture
+def ending(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Path], dict[str, Any]]], None]:
+    """Let every run end in a given way instead of running."""
+
+    def replace(end: Callable[[Path], dict[str, Any]]) -> None:
+        monkeypatch.setattr("warpsph.solver.run.run_scene", run_that(end))
+
+    return replace
+
+
+def test_real_validation_prints_one_strict_json_object_a_row(
+    warpsph: Command, scene_file: Path, tmp_path: Path
+) -> None:
+    result = warpsph("validate", scene_file, "--resolutions", "0.25,0.5", "--json", "--out", tmp_path / "out")
+    assert result.exit_code == 0
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [(row["scene"], row["resolution"], row["quantity"]) for row in rows] == [
+        ("tank", 0.5, "front"),
+        ("tank", 0.25, "front"),
+    ]
+    assert all(row["holds"] is True and row["particles"] > 0 and row["wall_seconds"] > 0 for row in rows)
+
+
+def test_broken_bound_fails(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    broken = {**fake_runs.REFERENCE_ROW, "error": 0.5, "holds": False}
+    ending(lambda out: fake_runs.summary(broken))
+    result = warpsph("validate", scene_file, "--out", tmp_path)
+    assert result.exit_code == 1
+    assert "NO" in result.stdout
+
+
+def test_row_without_bound_fails_nothing(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    ending(lambda out: fake_runs.summary({**fake_runs.REFERENCE_ROW, "bound": None, "holds": None}))
+    assert warpsph("validate", scene_file, "--out", tmp_path).exit_code == 0
+
+
+def test_table_states_the_observed_order(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    errors = iter([0.08, 0.02])
+    ending(lambda out: fake_runs.summary({**fake_runs.REFERENCE_ROW, "error": next(errors)}))
+    result = warpsph("validate", scene_file, "--resolutions", "0.5,0.25", "--out", tmp_path)
+    assert "tank, front: observed order 2.00" in result.stdout
+
+
+def test_diverged_run_fails_and_the_others_still_run(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    ends = iter([raising(fake_runs.diverged()), lambda out: fake_runs.summary()])
+    ending(lambda out: next(ends)(out))
+    result = warpsph("validate", scene_file, "--resolutions", "0.5,0.25", "--json", "--out", tmp_path)
+    assert result.exit_code == 1
+    assert [json.loads(line)["holds"] for line in result.stdout.splitlines()] == [False, True]
+
+
+@pytest.mark.parametrize("spacings", ["coarse", "0.1,-1", "0.1,nan", ""])
+def test_wrong_resolutions_are_bad_input(warpsph: Command, scene_file: Path, spacings: str) -> None:
+    result = warpsph("validate", scene_file, "--resolutions", spacings)
+    assert result.exit_code == 2
+    assert "as in 0.02,0.01" in result.stderr
+
+
+def test_every_scene_is_loaded_before_the_first_run(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    ending(raising(AssertionError("nothing may run")))
+    assert warpsph("validate", scene_file, "missing.yaml", "--out", tmp_path).exit_code == 2

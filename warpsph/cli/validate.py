@@ -1,0 +1,122 @@
+"""`warpsph validate`: how good are the numbers, and what do they cost."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated, Any
+
+import typer
+
+from warpsph.cli.failures import BadInput, ExitCode, reported
+from warpsph.cli.options import Device, Overrides, Threads, Verbose
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from rich.console import Console
+
+    from warpsph.scene.schema import Scene
+    from warpsph.validation.runner import Case, CaseResult, RunScene
+
+Scenes = Annotated[
+    list[str] | None,
+    typer.Argument(
+        metavar="[SCENE]...",
+        help="Scene files or names of shipped scenes. Default: all shipped ones with references.",
+    ),
+]
+Quick = Annotated[
+    bool, typer.Option("--quick", help="Only the coarse resolutions that the scenes name for this.")
+]
+Resolutions = Annotated[
+    str | None, typer.Option(metavar="DP,DP,...", help="Particle spacings [m] instead of the scenes' own.")
+]
+Json = Annotated[bool, typer.Option("--json", help="Print one JSON object a line instead of a table.")]
+Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of all runs.")]
+Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
+
+
+@reported
+def validate(
+    scenes: Scenes = None,
+    quick: Quick = False,
+    resolutions: Resolutions = None,
+    json_lines: Json = False,
+    out: Out = Path("out/validation"),
+    device: Device = None,
+    threads: Threads = None,
+    overrides: Overrides = None,
+    quiet: Quiet = False,
+    verbose: Verbose = False,
+) -> ExitCode:
+    """Run scenes over their resolutions and compare them with their references.
+
+    Progress goes to stderr, results to stdout. Exit code 0 if every bound holds, 1 if one does not or a run
+    fails, 2 if a scene or the request is wrong, which is found before the first run.
+    """
+    from warpsph.cli.consoles import plain_console
+    from warpsph.cli.tables import validation_table
+    from warpsph.cli.warp_runtime import start_warp
+    from warpsph.validation.runner import run_case
+
+    spacings = parse_spacings(resolutions)
+    cases = planned_cases(scenes, quick, spacings, overrides or ())
+    progress = plain_console(stderr=True, quiet=quiet)
+    start_warp(device, verbose=verbose)
+    results: list[CaseResult] = []
+    try:
+        for number, case in enumerate(cases, start=1):
+            progress.print(f"{number}/{len(cases)} {case.scene.name} at spacing {case.scene.spacing:g} m")
+            result = run_case(case, out, runner_with(progress, quiet, device, threads))
+            results.append(result)
+            if json_lines:
+                print_json_lines(result)
+    finally:
+        if results and not json_lines:
+            plain_console().print(validation_table(results))
+    return ExitCode.OK if all(result.holds for result in results) else ExitCode.FAILED
+
+
+def planned_cases(
+    scenes: Sequence[str] | None, quick: bool, resolutions: Sequence[float] | None, overrides: Sequence[str]
+) -> tuple[Case, ...]:
+    """Every run of the validation, all loaded, so that bad input shows before the first run."""
+    from warpsph.validation.runner import cases_of, scenes_with_references
+
+    return tuple(
+        case
+        for scene in scenes or scenes_with_references()
+        for case in cases_of(scene, quick=quick, resolutions=resolutions, overrides=overrides)
+    )
+
+
+def runner_with(progress: Console, quiet: bool, device: str | None, threads: int | None) -> RunScene:
+    """A function that runs a scene into a directory and shows how it goes."""
+    from warpsph.cli.progress import reporter_for
+    from warpsph.solver.run import run_scene
+
+    def run(scene: Scene, directory: Path) -> Mapping[str, Any]:
+        with reporter_for(progress, quiet=quiet) as reporter:
+            return run_scene(scene, directory, device=device, threads=threads, reporter=reporter)
+
+    return run
+
+
+def parse_spacings(text: str | None) -> tuple[float, ...] | None:
+    """Particle spacings [m] from such as 0.02,0.01. Raises BadInput."""
+    if text is None:
+        return None
+    try:
+        spacings = tuple(float(part) for part in text.split(","))
+    except ValueError:
+        spacings = ()
+    if not spacings or not all(0.0 < spacing < float("inf") for spacing in spacings):
+        raise BadInput(f"--resolutions {text}: give particle spacings [m] greater than 0, as in 0.02,0.01")
+    return spacings
+
+
+def print_json_lines(result: CaseResult) -> None:
+    """One object a line, on disk at once where stdout is a file."""
+    for row in result.rows:
+        print(json.dumps(row, allow_nan=False), flush=True)

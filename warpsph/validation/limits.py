@@ -1,0 +1,61 @@
+"""Probe columns that must stay between limits over a window of time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from warpsph.output.probes_csv import TIME_COLUMN
+from warpsph.scene.references import LimitReference
+from warpsph.scene.schema import Scene
+from warpsph.validation.comparison import Comparison, History
+
+
+def compare_limit(name: str, reference: LimitReference, scene: Scene, history: History) -> Comparison:
+    """The row of a limit: its error is the violation, in the unit of the column, and its bound is zero.
+
+    `value` is the value that comes nearest to breaking a limit or breaks it most, `reference` that limit. A
+    run that ended before the window did, or a value that is no number, does not hold.
+    """
+    first, last = reference.window or (0.0, scene.time.end)
+    time = history[TIME_COLUMN]
+    slack = 1e-9 * max(1.0, last)
+    values = history[reference.column][(time >= first - slack) & (time <= last + slack)]
+    reached = time.size > 0 and time[-1] >= last - _sampling_interval(scene) - slack
+    value, limit, violation = _worst(values, reference) if reached and values.size else (math.nan,) * 3
+    return Comparison(
+        quantity=name,
+        compared=reference.column,
+        norm="max",
+        value=value,
+        reference=limit,
+        error=violation,
+        bound=0.0,
+        uncertainty=0.0,
+        source=reference.source,
+        error_unit=unit_of(reference.column),
+        note=None if reached else f"the run ended before t = {last:.6g} s",
+    )
+
+
+def unit_of(column: str) -> str:
+    """The unit in the brackets of a probe column."""
+    return column.rpartition("[")[2].rstrip("]")
+
+
+def _sampling_interval(scene: Scene) -> float:
+    return 1.0 / (scene.output.probe_rate or scene.time.frame_rate)
+
+
+def _worst(values: np.ndarray, reference: LimitReference) -> tuple[float, float, float]:
+    """Value, limit and violation where the signed distance beyond a limit is largest; NaN wins over all."""
+    candidates = []
+    if reference.low is not None:
+        candidates.append((reference.low - np.min(values), np.min(values), reference.low))
+    if reference.high is not None:
+        candidates.append((np.max(values) - reference.high, np.max(values), reference.high))
+    if not all(math.isfinite(beyond) for beyond, _, _ in candidates):
+        return math.nan, candidates[0][2], math.nan
+    beyond, value, limit = max(candidates)
+    return float(value), float(limit), max(0.0, float(beyond))

@@ -1,0 +1,110 @@
+"""Run scenes over their resolutions and collect the comparisons with their references."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from warpsph.scene import load_scene, shipped_scenes
+from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.schema import Scene, Validation
+
+RunScene = Callable[[Scene, Path], Mapping[str, Any]]
+"""Runs a scene into a directory and returns its summary."""
+
+RUN_FACTS = ("wall_seconds", "steps", "particles", "particle_steps_per_second", "device", "threads")
+"""What every row repeats of its run: what the figure cost, and on what."""
+
+
+@dataclass(frozen=True)
+class Case:
+    """A scene at one resolution, ready to run."""
+
+    scene: Scene
+
+    @property
+    def directory(self) -> Path:
+        """Where the case runs, relative to the directory of the whole validation."""
+        return Path(self.scene.name) / f"{self.scene.spacing:g}"
+
+
+@dataclass(frozen=True)
+class CaseResult:
+    """The rows of a case, one a reference; `failure` says why the run did not come to its end."""
+
+    case: Case
+    rows: tuple[Mapping[str, Any], ...]
+    failure: str | None = None
+
+    @property
+    def holds(self) -> bool:
+        """Whether the run came to its end within every bound."""
+        return self.failure is None and all(row["holds"] is not False for row in self.rows)
+
+
+def cases_of(
+    scene: str, *, quick: bool, resolutions: Sequence[float] | None, overrides: Sequence[str]
+) -> tuple[Case, ...]:
+    """A scene at the spacings [m] asked for, else at those that its `validation` names, coarse ones first.
+
+    Overrides beat those of `validation.set`. Frames are not kept as USD unless an override says so. Raises
+    SceneError if any case cannot run, or if the scene has nothing to compare with.
+    """
+    base = load_scene(scene, overrides)
+    if not base.references:
+        allowed = "a scene with references, which `warpsph scenes` counts"
+        raise SceneError(
+            [Problem.at("references", f"the scene {base.name} has nothing to compare with", allowed)]
+        )
+    prescribed = base.validation.set if base.validation else {}
+    own = [f"{key}={json.dumps(value)}" for key, value in prescribed.items()]
+    spacings = sorted(set(resolutions or _spacings(base, quick=quick)), reverse=True)
+    return tuple(
+        Case(load_scene(scene, ["output.usd=false", *own, *overrides, f"spacing={spacing!r}"]))
+        for spacing in spacings
+    )
+
+
+def scenes_with_references() -> tuple[str, ...]:
+    """Names of the shipped scenes that can be validated."""
+    return tuple(name for name, path in shipped_scenes().items() if load_scene(path).references)
+
+
+def run_case(case: Case, directory: Path, run_scene: RunScene) -> CaseResult:
+    """Run a case below `directory`; a run that diverges gives rows without values, and none of them holds."""
+    from warpsph.solver.errors import SimulationDiverged
+
+    try:
+        summary = run_scene(case.scene, directory / case.directory)
+    except SimulationDiverged as error:
+        return CaseResult(
+            case, tuple(_row_of_failed_run(case, name) for name in case.scene.references), str(error)
+        )
+    facts = _facts(summary)
+    return CaseResult(case, tuple(_row(case, comparison, facts) for comparison in summary["references"]))
+
+
+def _spacings(scene: Scene, *, quick: bool) -> Sequence[float]:
+    validation = scene.validation or Validation(resolutions=(scene.spacing,))
+    if not quick:
+        return validation.resolutions
+    return validation.quick or (max(validation.resolutions),)
+
+
+def _facts(summary: Mapping[str, Any]) -> dict[str, Any]:
+    same = {key: summary[key] for key in ("particles", "particle_steps_per_second", "device", "threads")}
+    return {"wall_seconds": summary["wall_s"], "steps": summary["steps"]["count"], **same}
+
+
+def _row(case: Case, comparison: Mapping[str, Any], facts: Mapping[str, Any]) -> dict[str, Any]:
+    return {"scene": case.scene.name, "resolution": case.scene.spacing, **comparison, **facts}
+
+
+def _row_of_failed_run(case: Case, quantity: str) -> dict[str, Any]:
+    bound = getattr(case.scene.references[quantity], "bound", 0.0)
+    nothing = dict.fromkeys(("value", "reference", "error"))
+    comparison = {"quantity": quantity, **nothing, "bound": bound, "holds": None if bound is None else False}
+    return _row(case, comparison, dict.fromkeys(RUN_FACTS))
