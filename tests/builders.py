@@ -62,7 +62,13 @@ GAP, VISCOSITY = 1.0e-3, 1.0e-6
 """Distance of the channel's plates [m] and kinematic viscosity [m^2/s] of Morris, Fox & Zhu (1997)."""
 
 
-def channel(particles_across: int = 20, drive: float = 0.0, lid_speed: float = 0.0, slip: str = "no_slip", **changes: Any) -> Scene:
+def channel(
+    particles_across: int = 20,
+    drive: float = 0.0,
+    lid_speed: float = 0.0,
+    slip: str = "no_slip",
+    **changes: Any,
+) -> Scene:
     """Fluid between two plates, periodic along x, driven by a body force [m/s^2] or by the upper plate [m/s]."""
     spacing = GAP / particles_across
     length = 12 * spacing

@@ -8,9 +8,9 @@ from typing import Any, NamedTuple
 
 import warp as wp
 
-from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation
+from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation, make_widen
 from warpsph_kernels.fluid import FluidOptions, make_pair_force
-from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.pair_terms import make_barrier, make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
 
@@ -18,6 +18,8 @@ from warpsph_kernels.state import STATES
 class WallKernels(NamedTuple):
     """Kernels of walls, in the order of a step."""
 
+    find_normals: Any
+    keep_surface: Any
     move: Any
     extrapolate: Any
     set_pressure: Any
@@ -54,12 +56,60 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     module = options.module
     constants_type, pose_type = make_constants_struct(arithmetic), make_pose_struct(arithmetic)
     pack, unpack = make_packing(arithmetic)
-    narrow = make_narrow(arithmetic)
+    narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     shape, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
     state = STATES[options.state](arithmetic)
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
+    barrier = make_barrier(arithmetic)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def find_normals(
+        offset: int,
+        c: constants_type,
+        first_wall: int,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        listed_position: wp.array(dtype=vector),
+        normal: wp.array(dtype=vector),
+    ):
+        """One wall particle: the unit vector away from the other wall particles, -sum_b V_b grad W_ab normalised.
+
+        Here the rows hold walls, as also for `keep_surface`.
+        """
+        i = offset + wp.tid()
+        x_a = listed_position[first_wall + i]
+        gradient = vector()
+        for n in range(ends[i, 0]):
+            x_ab = separation(x_a, listed_position[neighbours[i, n]], c.period)
+            gradient += slope(wp.length(x_ab) * c.inverse_h) * x_ab
+        normal[i] = -wp.normalize(gradient)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def keep_surface(
+        offset: int,
+        c: constants_type,
+        spacing: real,
+        first_wall: int,
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        listed_position: wp.array(dtype=vector),
+        normal: wp.array(dtype=vector),
+    ):
+        """One wall particle: forget the normal if another lies around the point one spacing along it.
+
+        The test by an empty place ahead is that of Marrone et al. (2010), section 3, for free surfaces.
+        """
+        i = offset + wp.tid()
+        ahead = listed_position[first_wall + i] + spacing * normal[i]
+        is_surface = bool(True)
+        for n in range(ends[i, 0]):
+            gap = separation(ahead, listed_position[neighbours[i, n]], c.period)
+            if wp.length(gap) < real(0.85) * spacing:
+                is_surface = False
+        if not is_surface:
+            normal[i] = vector()
 
     @wp.kernel(module=module, enable_backward=False)
     def move(
@@ -70,11 +120,13 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         poses: wp.array(dtype=pose_type),
         set_index: wp.array(dtype=wp.int32),
         reference: wp.array(dtype=point),
+        reference_normal: wp.array(dtype=vector),
         position: wp.array(dtype=point),
         velocity_volume: wp.array(dtype=record),
         position_pressure: wp.array(dtype=record),
         position_density: wp.array(dtype=record),
         acceleration: wp.array(dtype=vector),
+        normal: wp.array(dtype=vector),
     ):
         """One wall particle: place it by the pose of its set, with the exact velocity and acceleration."""
         i = offset + wp.tid()
@@ -91,6 +143,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         position_pressure[b] = pack(x_run, position_pressure[b][dim])
         position_density[b] = pack(x_run, position_density[b][dim])
         acceleration[b] = narrow(a, zero)
+        normal[i] = narrow(pose.rotation * widen(reference_normal[i]), zero)
 
     @wp.kernel(module=module, enable_backward=False)
     def extrapolate(
@@ -129,6 +182,8 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         # A neighbour at the rim of the support has no weight in single precision: there is nothing to average.
         if weight > real(1.0e-6) * c.norm:
             p_w = (pressure + wp.dot(c.gravity - acceleration[w], moment)) / weight
+            if wp.static(not options.wall_suction):
+                p_w = wp.max(p_w, real(0.0))
             if wp.static(options.wall_friction):
                 v_seen = real(2.0) * v_seen - velocity / weight
         position_pressure[w] = pack(x_w, p_w)
@@ -203,6 +258,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         position_pressure: wp.array(dtype=record),
         velocity_volume: wp.array(dtype=record),
         friction: wp.array(dtype=record),
+        normal: wp.array(dtype=vector),
         force: wp.array(dtype=vector),
     ):
         """One wall particle: the force of the fluid on it [N], pair by pair the opposite of what the fluid receives."""
@@ -218,7 +274,10 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
             v_wb = vector()
             if wp.static(options.wall_friction):
                 v_wb = friction[i][dim] * (unpack(friction[i]) - unpack(vV_b))
-            total += vV_b[dim] * wall_force(c, x_wb, v_wb, p_w, xp_b[dim])
+            pair = wall_force(c, x_wb, v_wb, p_w, xp_b[dim])
+            if wp.static(options.has_barrier):
+                pair -= barrier(c, -x_wb, normal[i])
+            total += vV_b[dim] * pair
         force[i] = c.wall_volume * total
 
-    return WallKernels(move, extrapolate, set_pressure, update_density, react)
+    return WallKernels(find_normals, keep_surface, move, extrapolate, set_pressure, update_density, react)

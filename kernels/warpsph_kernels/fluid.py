@@ -12,7 +12,13 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation, make_widen
-from warpsph_kernels.pair_terms import DIFFUSIONS, PRESSURE_FORMS, VISCOSITIES, make_constants_struct
+from warpsph_kernels.pair_terms import (
+    DIFFUSIONS,
+    PRESSURE_FORMS,
+    VISCOSITIES,
+    make_barrier,
+    make_constants_struct,
+)
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
 
@@ -30,8 +36,15 @@ class FluidOptions:
     viscosity: str
     wall: str
     """Wall method: none, dynamic or extrapolated."""
+    wall_suction: bool
+    """Whether extrapolated walls may have negative pressure."""
     wall_friction: bool
     """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
+
+    @property
+    def has_barrier(self) -> bool:
+        """Whether wall surfaces push back particles that come too near, see `make_barrier`."""
+        return self.wall == "extrapolated"
 
     @property
     def module(self) -> str:
@@ -92,6 +105,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     fluid_force = make_pair_force(options, has_viscosity)
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     has_walls = options.wall != "none"
+    barrier = make_barrier(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
     def begin_step(
@@ -146,13 +160,15 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         position_pressure: wp.array(dtype=record),
         velocity_volume: wp.array(dtype=record),
         friction: wp.array(dtype=record),
+        wall_normal: wp.array(dtype=vector),
         first_wall: int,
         acceleration: wp.array(dtype=vector),
     ):
         """One particle: dv_a/dt = g + V_a/m_a sum_b V_b f_ab over fluid and walls.
 
         The pressure part in volume form is that of Colagrossi & Landrini (2003), eq. 13. `friction` holds the
-        velocity that viscosity sees at a wall particle, and 1 where the wall is no-slip, else 0.
+        velocity that viscosity sees at a wall particle, and 1 where the wall is no-slip, else 0; `wall_normal` is zero
+        behind the surface of a wall.
         """
         i = offset + wp.tid()
         xp_a = position_pressure[i]
@@ -176,7 +192,10 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
                 if wp.static(options.wall_friction):
                     friction_b = friction[b - first_wall]
                     v_ab = friction_b[dim] * (v_a - unpack(friction_b))
-                total += c.wall_volume * wall_force(c, x_ab, v_ab, p_a, xp_b[dim])
+                force = wall_force(c, x_ab, v_ab, p_a, xp_b[dim])
+                if wp.static(options.has_barrier):
+                    force += barrier(c, x_ab, wall_normal[b - first_wall])
+                total += c.wall_volume * force
         acceleration[i] = c.gravity + V_a / c.mass * total
 
     @wp.kernel(module=module, enable_backward=False)

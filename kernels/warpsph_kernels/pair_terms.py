@@ -18,7 +18,10 @@ Factory = Callable[[Arithmetic], Any]
 
 @cache
 def make_constants_struct(arithmetic: Arithmetic) -> Any:
-    """Return the struct of a fluid's numbers: SI units, `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0."""
+    """Return the struct of a fluid's numbers, in SI units.
+
+    `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0; for `barrier` see `make_barrier`.
+    """
     real, vector = arithmetic.real, arithmetic.vector
 
     class FluidConstants:
@@ -37,6 +40,9 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "artificial_viscosity",
         "dynamic_viscosity",
         "diffusion",
+        "inverse_spacing",
+        "barrier",
+        "inverse_barrier_reach",
     )
     FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | {"gravity": vector, "period": vector}
     return wp.struct(FluidConstants)
@@ -126,6 +132,31 @@ def make_fourtakas(arithmetic: Arithmetic) -> Any:
         return real(2.0) * (deviation_a - deviation_b - hydrostatic)
 
     return wp.func(fourtakas)
+
+
+@cache
+def make_barrier(arithmetic: Arithmetic) -> Any:
+    """Return the device function of the force that keeps fluid a out of the surface particle b of a wall.
+
+    B min(1 - d/D, 1) (1 - s^2/dp^2)^2 n_b, where the distance d = x_ab . n_b along the normal of the wall is between
+    -dp/2 and D, and the distance s across it below dp; summed over a flat wall the second factor is nearly one.
+    A pressure that is averaged over the fluid, as that of an extrapolated wall, does not answer to the single particle
+    that comes too near, and density diffusion takes away its own: without a barrier disordered fluid creeps in. It
+    acts along the normal only, hence without friction, and not at all on particles that keep more than D - dp/2
+    off the surface.
+    """
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def barrier(c: constants_type, x_ab: vector, normal: vector):
+        d = wp.dot(x_ab, normal)
+        across = (wp.dot(x_ab, x_ab) - d * d) * c.inverse_spacing * c.inverse_spacing
+        nearness = wp.min(real(1.0) - d * c.inverse_barrier_reach, real(1.0))
+        strength = real(0.0)
+        if nearness > real(0.0) and across < real(1.0) and d * c.inverse_spacing > real(-0.5):
+            strength = nearness * (real(1.0) - across) * (real(1.0) - across)
+        return c.barrier * strength * normal
+
+    return wp.func(barrier)
 
 
 PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType({"symmetric": make_symmetric_pressure})

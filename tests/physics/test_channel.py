@@ -56,7 +56,9 @@ def test_couette_start_up(t):
 
 
 def test_poiseuille_converges():
-    errors = [largest_error(channel(n, drive=DRIVE, numerics=dict(LAMINAR)), poiseuille, 0.1) for n in (10, 20)]
+    errors = [
+        largest_error(channel(n, drive=DRIVE, numerics=dict(LAMINAR)), poiseuille, 0.1) for n in (10, 20)
+    ]
     assert errors[1] < 0.6 * errors[0]
 
 

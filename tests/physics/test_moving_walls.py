@@ -28,7 +28,8 @@ def test_a_shaken_vessel_feels_the_inertia_of_its_fluid():
     # x = A sin(omega t) with the fluid at the vessel's first speed: the fluid is carried along as one body, so the
     # force of the fluid on the vessel is m A omega^2 sin(omega t).
     motion = [{"type": "sinusoid", "translation": (AMPLITUDE, 0.0), "frequency": FREQUENCY}]
-    scene = closed_vessel(velocity=(AMPLITUDE * OMEGA, 0.0), motion=motion)
+    numerics = {"wall": {"type": "extrapolated", "suction": True}}
+    scene = closed_vessel(velocity=(AMPLITUDE * OMEGA, 0.0), motion=motion, numerics=numerics)
     sim = Simulation(scene, device="cpu")
     for t in (0.15, 0.25, 0.35):
         sim.advance(t)

@@ -40,7 +40,14 @@ def same_bits(first: Path, second: Path) -> bool:
 def test_a_run_leaves_everything_behind(tmp_path):
     summary = run_scene(sloshing(), tmp_path, device="cpu")
     names = {path.name for path in tmp_path.iterdir()}
-    assert names == {"scene.yaml", "summary.json", "probes.csv", "particles.usdc", "frames.h5", "checkpoint.h5"}
+    assert names == {
+        "scene.yaml",
+        "summary.json",
+        "probes.csv",
+        "particles.usdc",
+        "frames.h5",
+        "checkpoint.h5",
+    }
     assert json.loads((tmp_path / "summary.json").read_text())["status"] == "complete"
     stage = Usd.Stage.Open(str(tmp_path / "particles.usdc"))
     points = [UsdGeom.Points(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Points)]
@@ -84,7 +91,8 @@ def run_in_a_process(scene: Scene, out: Path) -> subprocess.Popen:
     path = out.with_suffix(".yaml")
     path.write_text(scene.to_yaml())
     code = (
-        "import sys, warp; warp.config.quiet = True; from pathlib import Path; from warpsph import load_scene, run_scene\n"
+        "import sys, warp; warp.config.quiet = True\n"
+        "from pathlib import Path; from warpsph import load_scene, run_scene\n"
         "try: run_scene(load_scene(sys.argv[1]), Path(sys.argv[2]), device='cpu')\n"
         "except KeyboardInterrupt: sys.exit(130)"
     )

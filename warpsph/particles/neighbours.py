@@ -129,9 +129,11 @@ class NeighbourSearch:
         buckets = int(np.prod(self.cells))
         self.tables = [CellTable(launcher, first, count, buckets) for first, count in ranges]
         self.listed_position = wp.zeros(max(particles, 1), dtype=arithmetic.vector, device=launcher.device)
-        capacity = self._estimate_neighbours(spacing)
+        self._first_capacity = self._estimate_neighbours(spacing)
         self.rows = [
-            NeighbourRows(launcher, self.tables[target], [self.tables[s] for s in sources], capacity)
+            NeighbourRows(
+                launcher, self.tables[target], [self.tables[s] for s in sources], self._first_capacity
+            )
             for target, sources in pairs
         ]
         self._listed = [
@@ -163,11 +165,13 @@ class NeighbourSearch:
         """Fill every list from the sorted tables, with longer rows where they overflow."""
         self.builds += 1
         for rows in self.rows:
-            self._fill(rows)
-            longest = self._longest(rows)
-            if longest > rows.capacity:
-                rows.grow(math.ceil(GROWTH * longest))
-                self._fill(rows)
+            self._fill_completely(rows)
+
+    def list_once(self, target: int, source: int) -> NeighbourRows:
+        """Return rows of one table's particles with another's (or its own), for a single use."""
+        rows = NeighbourRows(self._launcher, self.tables[target], [self.tables[source]], self._first_capacity)
+        self._fill_completely(rows)
+        return rows
 
     def must_rebuild(self, displacement: float, speed: float, step: float) -> bool:
         """Tell whether a particle may leave half the skin within the next step [m, m/s, s]."""
@@ -240,6 +244,13 @@ class NeighbourSearch:
         self._launcher.bind("sort", self._kernels.find_cell_starts, table.key, table.count, table.start).run(
             buckets
         )
+
+    def _fill_completely(self, rows: NeighbourRows) -> None:
+        self._fill(rows)
+        longest = self._longest(rows)
+        if longest > rows.capacity:
+            rows.grow(math.ceil(GROWTH * longest))
+            self._fill(rows)
 
     def _fill(self, rows: NeighbourRows) -> None:
         for segment, source in enumerate(rows.sources):

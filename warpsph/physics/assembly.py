@@ -33,6 +33,18 @@ class Assembly:
 
 
 @dataclass(frozen=True)
+class WallSurface:
+    """What the fluid needs of each wall particle beside its pressure; arrays of shape (walls,), or (1,) without any.
+
+    friction: records (velocity that viscosity sees [m/s], 1 where the wall is no-slip else 0); normal: unit vectors
+    out of the wall at its surface, zero behind it.
+    """
+
+    friction: wp.array
+    normal: wp.array
+
+
+@dataclass(frozen=True)
 class Lists:
     """Neighbour rows by target; None where the scene needs no such pairs."""
 

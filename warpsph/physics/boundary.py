@@ -7,14 +7,16 @@ from typing import Any
 
 import numpy as np
 import warp as wp
+from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.boundary import make_pose_struct, make_wall_kernels
 
 from warpsph.particles.launch import Pass
 from warpsph.particles.neighbours import NeighbourRows
 from warpsph.particles.state import host_view, write_array
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.physics.state import density_deviation
 from warpsph.sampling.kinematics import Pose, RigidMotion
+from warpsph.scene.placement import cross_matrix
 
 
 class WallModel:
@@ -23,7 +25,7 @@ class WallModel:
     Args:
         motions: rigid motion by set index, for walls that move.
         sets: number of all sets, since a particle names its set by index.
-        friction: records (velocity that viscosity sees, 1 where the wall is no-slip else 0), shape (walls,).
+        surface: arrays that this model fills for the fluid.
     """
 
     def __init__(
@@ -32,10 +34,10 @@ class WallModel:
         lists: Lists,
         motions: Mapping[int, RigidMotion],
         sets: int,
-        friction: wp.array,
+        surface: WallSurface,
     ) -> None:
         self.count = assembly.layout.walls
-        self.friction = friction
+        self.surface = surface
         self._assembly = assembly
         self._lists = lists
         self._motions = dict(motions)
@@ -45,9 +47,19 @@ class WallModel:
         self._poses = wp.zeros(sets, dtype=self._pose_type, device=device)
         self._resting = [self._device_pose(None) for _ in range(sets)]
         first = assembly.layout.fluids
-        self.reference = wp.clone(assembly.state.position[first:]) if self.count else None
+        self.reference = wp.clone(assembly.state.position[first:])
+        self.reference_normal = wp.zeros_like(surface.normal)
         self.force = wp.zeros(max(self.count, 1), dtype=arithmetic.vector, device=device)
         self._bind()
+
+    @property
+    def own_arrays(self) -> dict[str, wp.array]:
+        """Arrays of shape (walls,) that follow the order of the walls and belong into a checkpoint."""
+        return {
+            "wall_reference": self.reference,
+            "wall_normal": self.reference_normal,
+            "wall_friction": self.surface.friction,
+        }
 
     @property
     def moving(self) -> bool:
@@ -87,6 +99,15 @@ class WallModel:
         else:
             self._impose.run(self.count)
 
+    def find_surface(self, rows: NeighbourRows, listed_position: wp.array, spacing: float) -> None:
+        """Find the normals of the surface of every wall from the walls around each wall particle."""
+        a, real = self._assembly, self._assembly.options.arithmetic.real
+        first = a.layout.fluids
+        lists = (rows.index, rows.ends, listed_position, self.reference_normal)
+        bind, kernels = a.launcher.bind, self._kernels
+        bind("wall surface", kernels.find_normals, a.constants, first, *lists).run(self.count)
+        bind("wall surface", kernels.keep_surface, a.constants, real(spacing), first, *lists).run(self.count)
+
     def start(self) -> None:
         """Give dynamic walls the density at which they are in equilibrium with the fluid before them."""
         if self.method != "dynamic":
@@ -112,8 +133,6 @@ class WallModel:
         self._bind()
 
     def _bind(self) -> None:
-        if not self.count:
-            return
         a = self._assembly
         first, state, scratch = a.layout.fluids, a.state, a.scratch
         rows = self._lists.wall
@@ -128,11 +147,13 @@ class WallModel:
             self._poses,
             state.set_index,
             self.reference,
+            self.reference_normal,
             state.position,
             state.velocity_volume,
             scratch.position_pressure,
             scratch.position_density,
             state.acceleration,
+            self.surface.normal,
         )
         self._react = bind(
             "wall force",
@@ -143,7 +164,8 @@ class WallModel:
             rows.ends,
             scratch.position_pressure,
             state.velocity_volume,
-            self.friction,
+            self.surface.friction,
+            self.surface.normal,
             self.force,
         )
         if self.method == "dynamic":
@@ -163,7 +185,7 @@ class WallModel:
             a.state.density_deviation,
             a.state.acceleration,
             a.state.velocity_volume,
-            self.friction,
+            self.surface.friction,
             a.scratch.position_pressure,
         )
 
@@ -181,7 +203,7 @@ class WallModel:
                 real(half_steps),
                 state.density_rate,
                 state.velocity_volume,
-                self.friction,
+                self.surface.friction,
                 state.density_deviation,
                 scratch.position_pressure,
             )
@@ -207,7 +229,7 @@ class WallModel:
         if pose is None:
             device_pose.rotation = np.eye(dim)
             return device_pose
-        spin, growth = _cross_matrix(pose.angular_velocity), _cross_matrix(pose.angular_acceleration)
+        spin, growth = cross_matrix(pose.angular_velocity), cross_matrix(pose.angular_acceleration)
         device_pose.rotation = pose.rotation
         device_pose.shift = pose.translation
         device_pose.rotation_rate = spin[:dim, :dim] @ pose.rotation
@@ -217,20 +239,12 @@ class WallModel:
         return device_pose
 
 
-def _cross_matrix(omega: np.ndarray) -> np.ndarray:
-    """Return the matrix of the cross product with omega from the left."""
-    x, y, z = omega
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-
-
-def friction_records(assembly: Assembly, no_slip: np.ndarray) -> wp.array:
-    """Return the friction record of each wall particle: velocity seen by viscosity, and 1 where it is no-slip."""
-    arithmetic = assembly.options.arithmetic
-    values = np.zeros((max(len(no_slip), 1), arithmetic.dimension + 1))
-    values[: len(no_slip), -1] = no_slip
-    array = wp.zeros(len(values), dtype=arithmetic.record, device=assembly.launcher.device)
-    write_array(array, values)
-    return array
+def make_wall_surface(arithmetic: Arithmetic, no_slip: np.ndarray, device: Any) -> WallSurface:
+    """Return the surface arrays of walls; `no_slip` has 1 for each particle of a no-slip wall and 0 for others."""
+    size = max(len(no_slip), 1)
+    friction = wp.zeros(size, dtype=arithmetic.record, device=device)
+    write_array(friction, np.column_stack([np.zeros((len(no_slip), arithmetic.dimension)), no_slip]))
+    return WallSurface(friction, wp.zeros(size, dtype=arithmetic.vector, device=device))
 
 
 def no_slip_flags(slips: Sequence[bool], counts: Sequence[int]) -> np.ndarray:

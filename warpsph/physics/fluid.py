@@ -10,8 +10,14 @@ from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
 from warpsph.particles.neighbours import SearchSpace
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.scene.schema import Fluid, Scene
+
+BARRIER_REACH = 0.75
+"""Distance from the surface particles of a wall, in spacings, below which the wall pushes fluid back. Particles at rest
+keep a whole spacing."""
+BARRIER_STRENGTH = 0.4
+"""Largest acceleration by the barrier in units of c0^2 / dp: it stops a particle that comes in at half of c0."""
 
 
 def smoothing_length(scene: Scene) -> float:
@@ -37,6 +43,7 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
         density_diffusion=numerics.density_diffusion.type,
         viscosity=numerics.viscosity.type,
         wall=numerics.wall.type if has_walls else "none",
+        wall_suction=getattr(numerics.wall, "suction", True),
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
     )
 
@@ -56,6 +63,9 @@ def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sou
     c.artificial_viscosity = getattr(numerics.viscosity, "alpha", 0.0) * h * sound_speed * fluid.density
     c.dynamic_viscosity = fluid.density * fluid.kinematic_viscosity
     c.diffusion = getattr(numerics.density_diffusion, "delta", 0.0) * h * sound_speed
+    c.inverse_spacing = 1.0 / scene.spacing
+    c.barrier = BARRIER_STRENGTH * fluid.density * sound_speed**2 / (scene.spacing * volume)
+    c.inverse_barrier_reach = 1.0 / (BARRIER_REACH * scene.spacing)
     c.gravity = arithmetic.vector(*scene.gravity)
     c.period = arithmetic.vector(*space.period)
     return c
@@ -79,7 +89,7 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
 class FluidModel:
     """The passes of the fluid. `count` particles are alive."""
 
-    def __init__(self, assembly: Assembly, lists: Lists, friction: Any) -> None:
+    def __init__(self, assembly: Assembly, lists: Lists, surface: WallSurface) -> None:
         self._lists = lists
         kernels = make_fluid_kernels(assembly.options)
         launcher, c, clock, origin = assembly.launcher, assembly.constants, assembly.clock, assembly.origin
@@ -119,7 +129,7 @@ class FluidModel:
             scratch.position_density,
         )
         self._assembly = assembly
-        self._friction = friction
+        self._surface = surface
         self._kernels = kernels
         self.bind_lists()
 
@@ -134,7 +144,8 @@ class FluidModel:
             rows.ends,
             a.scratch.position_pressure,
             a.state.velocity_volume,
-            self._friction,
+            self._surface.friction,
+            self._surface.normal,
             a.layout.fluids,
             a.state.acceleration,
         )

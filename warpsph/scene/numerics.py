@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from warpsph.scene.types import NonNegativeReal, PositiveReal, Real, SceneModel
+from warpsph.scene.types import Flag, NonNegativeReal, PositiveReal, Real, SceneModel
 
 SUPPORT_OVER_H: Mapping[str, float] = {"wendland_c2": 2.0}
 """Support radius of each kernel in units of its smoothing length."""
@@ -81,6 +81,9 @@ class ExtrapolatedWall(SceneModel):
     """Wall particles take pressure and velocity from the fluid, after Adami, Hu & Adams (2012)."""
 
     type: Literal["extrapolated"] = "extrapolated"
+    suction: Flag = False
+    """Whether the pressure of a wall may be negative: true for vessels filled to the lid, where pressures lie around
+    zero; false for free surfaces, where water that hangs from a wall should fall. Default: false."""
 
 
 WallMethod = Annotated[DynamicWall | ExtrapolatedWall, Field(discriminator="type")]

@@ -14,7 +14,7 @@ from warpsph.particles.launch import Launcher
 from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
 from warpsph.physics.assembly import Assembly, Lists
-from warpsph.physics.boundary import WallModel, friction_records, no_slip_flags
+from warpsph.physics.boundary import WallModel, make_wall_surface, no_slip_flags
 from warpsph.physics.fluid import (
     FluidModel,
     fluid_constants,
@@ -93,11 +93,9 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
         [scene.boundaries[s.name].slip == "no_slip" for s in boundaries],
         [len(s.position) for s in boundaries],
     )
-    friction = friction_records(assembly, flags)
-    fluid = FluidModel(assembly, lists, friction)
-    walls = (
-        WallModel(assembly, lists, _by_index(motions, sets), len(sets), friction) if layout.walls else None
-    )
+    surface = make_wall_surface(arithmetic, flags, launcher.device)
+    fluid = FluidModel(assembly, lists, surface)
+    walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface) if layout.walls else None
     return Parts(assembly, search, fluid, walls, *_reordered(assembly, search, walls))
 
 
@@ -153,5 +151,5 @@ def _reordered(
         return fluid_arrays, ()
     records = [array for _, array in arrays_of(assembly.scratch)]
     shared = [follow(array, WALL, assembly.layout.fluids) for array in (*state, *records)]
-    own = [follow(array, WALL, 0) for array in (walls.reference, walls.friction)]
+    own = [follow(array, WALL, 0) for array in walls.own_arrays.values()]
     return fluid_arrays, (*shared, *own)

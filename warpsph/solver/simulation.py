@@ -192,12 +192,8 @@ class Simulation:
 
     def save_state(self) -> dict[str, Any]:
         """Return everything that a run needs to go on with the same bits."""
-        arrays = {name: np.array(host_view(array)) for name, array in arrays_of(self._parts.assembly.state)}
-        return arrays | {
-            "listed_position": np.array(host_view(self._parts.search.listed_position)),
+        return {name: np.array(host_view(array)) for name, array in self._evolving_arrays()} | {
             "clock": np.array(host_view(self._parts.assembly.clock)),
-            "wall_reference": self._wall_array("reference"),
-            "wall_friction": self._wall_array("friction"),
             "alive": self._alive,
             "removed": self._stepper.removed,
             "step_count": self.step_count,
@@ -206,12 +202,8 @@ class Simulation:
 
     def load_state(self, saved: Mapping[str, Any]) -> None:
         """Go on from what `save_state` returned, in the same scene."""
-        for name, array in arrays_of(self._parts.assembly.state):
+        for name, array in self._evolving_arrays():
             write_array(array, saved[name])
-        write_array(self._parts.search.listed_position, saved["listed_position"])
-        if self._parts.walls:
-            write_array(self._parts.walls.reference, saved["wall_reference"])
-            write_array(self._parts.walls.friction, saved["wall_friction"])
         self._parts.search.tables[FLUID].count = int(saved["alive"])
         self._stepper.removed = int(saved["removed"])
         self.step_count, self.frame_index = int(saved["step_count"]), int(saved["frame_index"])
@@ -224,9 +216,11 @@ class Simulation:
     def _host(self, name: str) -> np.ndarray:
         return host_view(getattr(self._parts.assembly.state, name))
 
-    def _wall_array(self, name: str) -> np.ndarray:
-        walls = self._parts.walls
-        return np.array(host_view(getattr(walls, name))) if walls else np.zeros(0)
+    def _evolving_arrays(self) -> Iterator[tuple[str, wp.array]]:
+        yield from arrays_of(self._parts.assembly.state)
+        yield "listed_position", self._parts.search.listed_position
+        if self._parts.walls:
+            yield from self._parts.walls.own_arrays.items()
 
     def _columns(self, names: set[str]) -> dict[str, np.ndarray]:
         a = self._parts.assembly

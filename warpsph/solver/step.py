@@ -16,6 +16,7 @@ from warpsph_kernels.clock import BLOCK, LIMITS, StepLimits, make_clock_kernels
 
 from warpsph.particles.launch import Pass
 from warpsph.particles.state import host_view
+from warpsph.physics.boundary import WallModel
 from warpsph.physics.fluid import smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, WALL, Parts
@@ -38,6 +39,7 @@ class Stepper:
         self._fluid, self._walls, self._search = parts.fluid, parts.walls, parts.search
         self._parts = parts
         self._clock = parts.assembly.clock
+        self._spacing = scene.spacing
         self.removed = 0
         self._bind_clock(scene)
 
@@ -50,11 +52,19 @@ class Stepper:
         self.make_lists(all_tables=True)
         self._fluid.synchronise()
         if self._walls:
+            self.find_wall_surface(self._walls)
+            self._walls.place(time)
             self._walls.start()
         self.synchronise()
         self._fluid.update_density()
         self.update_wall_density()
         self.survey()
+
+    def find_wall_surface(self, walls: WallModel) -> None:
+        """Find the normals that keep fluid out of the walls, where the wall method needs them."""
+        if self._parts.assembly.options.has_barrier:
+            rows = self._search.list_once(WALL, WALL)
+            walls.find_surface(rows, self._search.listed_position, self._spacing)
 
     def resume(self, clock: np.ndarray) -> None:
         """Go on from a restored state with the lists, the order and the survey that it had."""
