@@ -18,9 +18,9 @@ ROOT = Path(__file__).parents[1]
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("warpsph.scene", "warpsph.frame"),
     ("warpsph.sampling", "warpsph.output", "warpsph.probes", "warpsph.particles"),
-    ("warpsph.physics", "warpsph.validation"),
+    ("warpsph.physics", "warpsph.comparison"),
     ("warpsph.solver", "warpsph.rendering"),
-    ("warpsph.validation.runner",),
+    ("warpsph.validation",),
     ("warpsph.cli",),
 )
 """From the bottom to the top; a module belongs to the longest name that it begins with."""

@@ -99,7 +99,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     ):
         """One wall particle: forget the normal if another lies around the point one spacing along it.
 
-        The test by an empty place ahead is that of Marrone et al. (2010), section 3, for free surfaces.
+        The test by an empty place ahead is that of Marrone et al. (2010), for free surfaces.
         """
         i = offset + wp.tid()
         ahead = listed_position[first_wall + i] + spacing * normal[i]

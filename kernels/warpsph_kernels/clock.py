@@ -106,8 +106,8 @@ def make_clock_kernels(arithmetic: Arithmetic) -> ClockKernels:
     ):
         """One thread: the next step from the extremes, and the time at its end.
 
-        Acoustic: cfl h / (c + v); force: cfl sqrt(h / a); viscous: h^2 / (8 nu) (Monaghan 1992, section 4; Morris,
-        Fox & Zhu 1997, eq. 24). The local sound speed follows the compression, c = c0 (rho/rho0)^((gamma-1)/2).
+        Acoustic: cfl h / (c + v); force: cfl sqrt(h / a); viscous: h^2 / (8 nu) (Monaghan 1992; Morris,
+        Fox & Zhu 1997). The local sound speed follows the compression, c = c0 (rho/rho0)^((gamma-1)/2).
         Two steps or less before the target, the step is shortened to land on it.
         """
         peak = wp.vector(dtype=wp.float64, length=5)

@@ -166,7 +166,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     ):
         """One particle: dv_a/dt = g + V_a/m_a sum_b V_b f_ab over fluid and walls.
 
-        The pressure part in volume form is that of Colagrossi & Landrini (2003), eq. 13. `friction` holds the
+        The pressure part in volume form is that of Colagrossi & Landrini (2003). `friction` holds the
         velocity that viscosity sees at a wall particle, and 1 where the wall is no-slip, else 0; `wall_normal` is zero
         behind the surface of a wall.
         """
@@ -233,7 +233,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     ):
         """One particle: drho_a/dt = rho_a sum_b V_b v_ab . grad_a W_ab + diffusion, then rho over half a step.
 
-        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010, eq. 5).
+        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010).
         """
         i = offset + wp.tid()
         xd_a = position_density[i]

@@ -50,7 +50,7 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
 
 @cache
 def make_symmetric_pressure(arithmetic: Arithmetic) -> Any:
-    """p_a + p_b (Colagrossi & Landrini 2003, eq. 13)."""
+    """p_a + p_b (Colagrossi & Landrini 2003)."""
     real = arithmetic.real
 
     def symmetric_pressure(p_a: real, p_b: real):
@@ -71,7 +71,7 @@ def make_no_viscosity(arithmetic: Arithmetic) -> Any:
 
 @cache
 def make_artificial_viscosity(arithmetic: Arithmetic) -> Any:
-    """alpha h c0 rho0 (v_ab . x_ab) / (r^2 + 0.01 h^2) x_ab for approaching pairs (Monaghan 1992, eq. 4.1).
+    """alpha h c0 rho0 (v_ab . x_ab) / (r^2 + 0.01 h^2) x_ab for approaching pairs (Monaghan 1992).
 
     Density and sound speed of the pair are taken at rest, as usual for a weakly compressible fluid.
     """
@@ -109,7 +109,7 @@ def make_no_diffusion(arithmetic: Arithmetic) -> Any:
 
 @cache
 def make_molteni_colagrossi(arithmetic: Arithmetic) -> Any:
-    """-2 (rho_b - rho_a), to be multiplied by delta h c0 V_b F (Molteni & Colagrossi 2009, eq. 9)."""
+    """-2 (rho_b - rho_a), to be multiplied by delta h c0 V_b F (Molteni & Colagrossi 2009)."""
     constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
 
     def molteni_colagrossi(c: constants_type, x_ab: vector, deviation_a: real, deviation_b: real):
@@ -120,7 +120,7 @@ def make_molteni_colagrossi(arithmetic: Arithmetic) -> Any:
 
 @cache
 def make_fourtakas(arithmetic: Arithmetic) -> Any:
-    """Molteni & Colagrossi's term without the hydrostatic part of rho_b - rho_a (Fourtakas et al. 2019, eq. 15).
+    """Molteni & Colagrossi's term without the hydrostatic part of rho_b - rho_a (Fourtakas et al. 2019).
 
     The hydrostatic part is linearised, rho0/c0^2 g . (x_b - x_a): over a support the next term is smaller by
     the relative change of the density.

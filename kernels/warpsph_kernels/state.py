@@ -16,7 +16,7 @@ from warpsph_kernels.arithmetic import Arithmetic
 
 @cache
 def make_tait(arithmetic: Arithmetic) -> Any:
-    """Tait: p = rho0 c0^2 / gamma ((rho/rho0)^gamma - 1) (Monaghan 1994, eq. 2.2).
+    """Tait: p = rho0 c0^2 / gamma ((rho/rho0)^gamma - 1) (Monaghan 1994).
 
     With e = rho/rho0 - 1 the bracket is gamma e (1 + (gamma-1)/2 e (1 + (gamma-2)/3 e (...))), which has no
     cancellation. Seven factors are the whole binomial of gamma = 7; what is left for another gamma is of order e^8.

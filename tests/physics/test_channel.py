@@ -19,7 +19,7 @@ def profile(sim: Simulation) -> tuple[np.ndarray, np.ndarray]:
 
 
 def poiseuille(y: np.ndarray, t: float) -> np.ndarray:
-    """Start-up between plates at rest (Morris, Fox & Zhu 1997, eq. 26)."""
+    """Start-up between plates at rest (Morris, Fox & Zhu 1997)."""
     v = DRIVE / (2.0 * VISCOSITY) * y * (GAP - y)
     for n in range(200):
         k = 2 * n + 1
@@ -29,7 +29,7 @@ def poiseuille(y: np.ndarray, t: float) -> np.ndarray:
 
 
 def couette(y: np.ndarray, t: float) -> np.ndarray:
-    """Start-up under a plate that moves from t = 0 on (Morris, Fox & Zhu 1997, eq. 25)."""
+    """Start-up under a plate that moves from t = 0 on (Morris, Fox & Zhu 1997)."""
     v = LID_SPEED * y / GAP
     for n in range(1, 400):
         decay = np.exp(-VISCOSITY * (n * np.pi / GAP) ** 2 * t)

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from compared_scenes import TANK
 
+from warpsph.comparison.compare import compare_run
 from warpsph.scene import Scene, SceneError
 from warpsph.solver.errors import SimulationDiverged
-from warpsph.validation.compare import compare_run
 from warpsph.validation.runner import cases_of, run_case
 
 REFERENCES = {

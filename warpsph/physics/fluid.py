@@ -74,7 +74,7 @@ def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sou
 def step_viscosity(scene: Scene, sound_speed: float) -> float:
     """Return the kinematic viscosity [m^2/s] that limits the step.
 
-    An artificial viscosity counts as alpha h c0 / 8 in 2D and / 10 in 3D (Monaghan 2005, section 8).
+    An artificial viscosity counts as alpha h c0 / 8 in 2D and / 10 in 3D (Monaghan 2005).
     """
     viscosity = scene.numerics.viscosity
     if viscosity.type == "laminar":

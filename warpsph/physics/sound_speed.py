@@ -12,7 +12,7 @@ from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.schema import Scene
 
 MACH_AT_EXPECTED_SPEED = 0.1
-"""Density varies by about the square of this number, one per cent (Monaghan 1994, section 2)."""
+"""Density varies by about the square of this number, one per cent (Monaghan 1994)."""
 
 
 def expected_speed(scene: Scene, sets: Sequence[SampledSet], wall_speed: float) -> float:

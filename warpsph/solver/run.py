@@ -11,6 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
+from warpsph.comparison.compare import FieldSample, compare_run, field_samples, fields_needed
 from warpsph.frame import Frame
 from warpsph.output.checkpoint import read_checkpoint, write_checkpoint
 from warpsph.output.probes_csv import ProbesCsv, read_probes
@@ -24,7 +25,6 @@ from warpsph.solver.resume import require_same_run
 from warpsph.solver.schedule import Stop, schedule
 from warpsph.solver.simulation import Simulation
 from warpsph.solver.summary import StepStatistics, summarise
-from warpsph.validation.compare import FieldSample, compare_run, field_samples, fields_needed
 
 
 class RunReporter(Protocol):

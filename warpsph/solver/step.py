@@ -1,6 +1,6 @@
 """One step of the scheme, as a page of verbs.
 
-Position Verlet with the density staggered against the velocity (Zhang, Rezavand & Hu 2020, eqs. 17-20): of second
+Position Verlet with the density staggered against the velocity (Zhang, Rezavand & Hu 2020): of second
 order, reversible for sound waves, and with one force sum and one continuity sum a step.
 """
 

@@ -7,9 +7,9 @@ from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
+from warpsph.comparison.row import Comparison
 from warpsph.solver.ledger import Ledger, measure_ledger
 from warpsph.solver.simulation import Simulation
-from warpsph.validation.comparison import Comparison
 
 NOTABLE_MACH = 0.2
 """Speed over sound speed from which compressibility shows (density errors of four per cent)."""

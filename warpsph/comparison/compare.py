@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from warpsph.comparison.fields import FieldSample, compare_field, field_samples, fields_needed
+from warpsph.comparison.limits import compare_limit
+from warpsph.comparison.row import Comparison, History
+from warpsph.comparison.series import compare_series
 from warpsph.scene.references import FieldReference, LimitReference, SeriesReference
 from warpsph.scene.schema import Scene
-from warpsph.validation.comparison import Comparison, History
-from warpsph.validation.fields import FieldSample, compare_field, field_samples, fields_needed
-from warpsph.validation.limits import compare_limit
-from warpsph.validation.series import compare_series
 
 __all__ = ["Comparison", "FieldSample", "History", "compare_run", "field_samples", "fields_needed"]
 

@@ -8,12 +8,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from warpsph.comparison.row import Comparison, Sample, relative_errors, representative
 from warpsph.frame import Frame, SetFrame
 from warpsph.scene.expressions import evaluate
 from warpsph.scene.references import FieldReference
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
-from warpsph.validation.comparison import Comparison, Sample, relative_errors, representative
 
 
 @dataclass(frozen=True)

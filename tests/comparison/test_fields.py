@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 from compared_scenes import tank_with
 
+from warpsph.comparison.compare import Comparison, compare_run, field_samples, fields_needed
 from warpsph.frame import Frame, SetFrame
 from warpsph.scene import Scene
-from warpsph.validation.compare import Comparison, compare_run, field_samples, fields_needed
 
 NO_PROBES = {"time[s]": np.array([0.0, 2.0])}
 

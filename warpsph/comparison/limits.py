@@ -6,10 +6,10 @@ import math
 
 import numpy as np
 
+from warpsph.comparison.row import Comparison, History
 from warpsph.output.probes_csv import TIME_COLUMN
 from warpsph.scene.references import LimitReference
 from warpsph.scene.schema import Scene
-from warpsph.validation.comparison import Comparison, History
 
 
 def compare_limit(name: str, reference: LimitReference, scene: Scene, history: History) -> Comparison:

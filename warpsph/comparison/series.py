@@ -7,17 +7,17 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from warpsph.output.probes_csv import TIME_COLUMN
-from warpsph.scene.references import InlineTable, SeriesReference
-from warpsph.scene.schema import Scene
-from warpsph.scene.tables import read_columns
-from warpsph.validation.comparison import (
+from warpsph.comparison.row import (
     Comparison,
     History,
     Sample,
     relative_errors,
     representative,
 )
+from warpsph.output.probes_csv import TIME_COLUMN
+from warpsph.scene.references import InlineTable, SeriesReference
+from warpsph.scene.schema import Scene
+from warpsph.scene.tables import read_columns
 
 LARGEST_LAG = 0.2
 """Lags are sought within this fraction of the last time of comparison, early and late."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 
-from warpsph.validation.comparison import Comparison, Sample
+from warpsph.comparison.row import Comparison, Sample
 
 
 def row(error: float, bound: float | None = 0.1) -> Comparison:

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from compared_scenes import tank_with
 
-from warpsph.validation.compare import Comparison, compare_run
+from warpsph.comparison.compare import Comparison, compare_run
 
 COLUMN = "energy.kinetic[J/m]"
 TIMES = np.linspace(0.0, 2.0, 21)
