@@ -57,7 +57,7 @@ NONSENSE = [
      "domain.kill_box.max", "greater than min"),
     ("kill_box: {min: [-1.0, -1.0]", "kill_box: {min: [0.5, -1.0]", "domain.kill_box", "removed at once"),
     ("periodic: {}", "periodic: {x: [1.0, 0.0]}", "domain.periodic.x", "not below high"),
-    ("periodic: {}", "periodic: {x: [0.9, 1.0]}", "domain.periodic.x", "meet their own images"),
+    ("periodic: {}", "periodic: {x: [0.9, 1.0]}", "domain.periodic.x", "too short for the neighbour search"),
     # walls
     ("open: [y_max]", "open: [x_min, x_max, y_min, y_max]", "boundaries.tank.open", "no wall is left"),
     ("side: outside", "side: outside\n    layers: 0", "boundaries.tank.layers", "too small"),
@@ -148,3 +148,10 @@ def test_support_radius_is_that_of_the_kernel() -> None:
     scene = scene_from_yaml(DAM_BREAK, overrides=["numerics.h_over_dp=2.0"])
     assert scene.support_radius == pytest.approx(2.0 * 2.0 * 0.05)
     assert Numerics().support_over_h == 2.0
+
+
+@pytest.mark.parametrize(("length", "too_short"), [(0.51, True), (0.52, False)])
+def test_a_period_below_three_search_radii_is_refused(length: float, too_short: bool) -> None:
+    # The search would meet the same cell from both sides and lose pairs. 3 * 1.15 * 2 h = 0.5175 m here.
+    problems = problems_of(DAM_BREAK, [f"domain.periodic={{x: [0.0, {length}]}}"])
+    assert any("neighbour search" in problem.message for problem in problems) == too_short

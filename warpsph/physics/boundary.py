@@ -50,7 +50,7 @@ class WallModel:
         self.reference = wp.clone(assembly.state.position[first:])
         self.reference_normal = wp.zeros_like(surface.normal)
         self.force = wp.zeros(max(self.count, 1), dtype=arithmetic.vector, device=device)
-        self._bind()
+        self.bind_lists()
 
     @property
     def own_arrays(self) -> dict[str, wp.array]:
@@ -129,10 +129,7 @@ class WallModel:
         return self.force
 
     def bind_lists(self) -> None:
-        """Build the passes that read neighbour lists; needed again when the rows have grown."""
-        self._bind()
-
-    def _bind(self) -> None:
+        """Build the passes; needed again when the rows of the neighbour lists have grown."""
         a = self._assembly
         first, state, scratch = a.layout.fluids, a.state, a.scratch
         rows = self._lists.wall

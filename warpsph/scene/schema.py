@@ -230,6 +230,11 @@ class Scene(SceneModel):
         """Radius of the kernel's support [m]."""
         return self.numerics.support_over_h * self.numerics.h_over_dp * self.spacing
 
+    @property
+    def search_radius(self) -> float:
+        """Radius of the neighbour lists: the support with its skin [m]."""
+        return (1.0 + self.numerics.skin) * self.support_radius
+
     def read_from(self, directory: Path, document: Document | None = None) -> Scene:
         """The same scene with relative file names counted from a directory, and the text it came from."""
         scene = self.model_copy()

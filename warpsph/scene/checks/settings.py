@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 MAX_FRAMES = 100_000
 MAX_PROBE_SAMPLES = 10_000_000
+CELLS_A_PERIOD = 3
+"""The search looks into a cell and the next on either side, which have to be three different ones."""
 
 
 def settings_problems(scene: Scene) -> Iterator[Problem]:
@@ -49,11 +51,10 @@ def domain_problems(scene: Scene) -> Iterator[Problem]:
             yield Problem.at(
                 key, f"low {low:g} is not below high {high:g}", "[low, high] with low < high", [low, high]
             )
-        elif high - low < 2.0 * scene.support_radius:
-            message = f"the period {high - low:g} m is so short that particles would meet their own images"
-            yield Problem.at(
-                key, message, f"at least twice the support radius, {2 * scene.support_radius:g} m"
-            )
+        elif high - low < (shortest := CELLS_A_PERIOD * scene.search_radius):
+            message = f"the period {high - low:g} m is too short for the neighbour search"
+            allowed = f"at least {CELLS_A_PERIOD} times the support radius with its skin, {shortest:g} m"
+            yield Problem.at(key, message, allowed)
 
 
 def _numerics_problems(scene: Scene) -> Iterator[Problem]:
