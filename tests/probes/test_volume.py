@@ -10,5 +10,13 @@ def test_compressed_block_has_less_volume_and_as_many_particles(dimension, unit)
     position = lattice([0.0] * dimension, [1.0] * dimension)
     water = fluid(position, density=np.full(len(position), 1.25 * DENSITY))
     probe = probe_of(scene_with({"type": "volume"}, dimension))
-    assert probe.columns == (f"probe.volume[{unit}]", "probe.particles[1]")
-    assert probe.evaluate(frame_of(water)) == pytest.approx((0.8, len(position)))
+    assert probe.columns == (f"probe.volume[{unit}]", "probe.particles[1]", "probe.removed[1]")
+    probe.start(frame_of(water))
+    assert probe.evaluate(frame_of(water)) == pytest.approx((0.8, len(position), 0.0))
+
+
+def test_particles_that_are_gone_are_counted():
+    position = lattice([0.0, 0.0], [1.0, 1.0])
+    probe = probe_of(scene_with({"type": "volume"}, 2))
+    probe.start(frame_of(fluid(position)))
+    assert probe.evaluate(frame_of(fluid(position[3:])))[1:] == (len(position) - 3, 3.0)

@@ -120,12 +120,12 @@ class EnergyProbe(_Probe):
 
 
 class VolumeProbe(_Probe):
-    """Volume (sum of m/rho) and number of particles of all fluids together."""
+    """Volume (sum of m/rho), number of particles of all fluids together, and how many have left through the kill box."""
 
     type: Literal["volume"] = "volume"
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
-        return (f"volume[m{dimension}]", "particles[1]")
+        return (f"volume[m{dimension}]", "particles[1]", "removed[1]")
 
 
 Probe = Annotated[
