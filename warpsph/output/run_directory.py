@@ -54,6 +54,8 @@ def create_run_directory(path: Path, scene: Scene, *, resume: bool = False) -> R
     Raises OutputError if the directory cannot be made or written.
     """
     directory = RunDirectory(path)
+    if path.exists() and not path.is_dir():
+        raise OutputError(path, "cannot write: this is a file; allowed: a directory, which is made if it is missing")
     try:
         path.mkdir(parents=True, exist_ok=True)
         if not resume:

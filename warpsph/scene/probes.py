@@ -120,7 +120,7 @@ class EnergyProbe(_Probe):
 
 
 class VolumeProbe(_Probe):
-    """Volume (sum of m/rho), number of particles of all fluids together, and how many have left through the kill box."""
+    """Volume (sum of m/rho) and number of particles of all fluids, and how many have left through the kill box."""
 
     type: Literal["volume"] = "volume"
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -71,6 +72,7 @@ def _stop(
 ) -> None:
     state = parts.assembly.state
     worst = int(np.argmax(measure[: parts.assembly.layout.total]))
+    found = float(measure[worst])
     raise SimulationDiverged(
         set=sets[int(host_view(state.set_index)[worst])].name,
         particle=int(host_view(state.id)[worst]),
@@ -78,6 +80,6 @@ def _stop(
         time=stepper.time - report.dt,
         step=step_count,
         limit=limit,
-        value=float(measure[worst]),
+        value=found if math.isfinite(found) else math.nan,
         advice="Try a smaller time.cfl or spacing, a higher numerics.sound_speed, or more viscosity.",
     )

@@ -39,7 +39,7 @@ class RunReporter(Protocol):
 
 def run_scene(
     scene: Scene,
-    out: Path,
+    out: Path | str,
     *,
     device: str | None = None,
     threads: int | None = None,
@@ -53,15 +53,19 @@ def run_scene(
         out: directory of the run, made if it is missing.
         device, threads: see `Simulation`.
         resume: go on from the checkpoint in `out`, to the same bits as a run without a break.
-        frames: stop after this many frames.
+        frames: stop after this many frames, at least one.
 
     Raises:
         SceneError: if the scene cannot be run.
+        ValueError: if `frames` or `threads` is less than 1.
         SimulationDiverged: if the state goes out of range; frames, probes and the last checkpoint stay.
         OutputError: if something cannot be written.
         CheckpointError: if `resume` finds no usable checkpoint.
         KeyboardInterrupt: after Ctrl-C, when frames, probes and a checkpoint are safe.
     """
+    if frames is not None and frames < 1:
+        raise ValueError(f"frames is {frames}; allowed: a whole number at least 1, or None for all")
+    out = Path(out)
     sim = Simulation(scene, device=device, threads=threads)
     saved = read_checkpoint(out / RunDirectory(out).checkpoint.name) if resume else None
     if saved is not None:
@@ -94,7 +98,7 @@ class _Run:
     def restore(self, state: dict[str, Any]) -> None:
         """Go on from a checkpoint."""
         self._sim.load_state(state["simulation"])
-        self._statistics.load(json.loads(state["statistics"]))
+        self._statistics.load(json.loads(state["statistics"]), self._sim)
         self._samples = [FieldSample(**sample) for sample in json.loads(state["samples"])]
         self._wall_before = float(state["wall_seconds"])
         self._resumed_at = self._sim.time
@@ -175,7 +179,7 @@ class _Run:
     def _write_checkpoint(self) -> None:
         state = {
             "simulation": self._sim.save_state(),
-            "statistics": json.dumps(self._statistics.save()),
+            "statistics": json.dumps(self._statistics.save(self._sim)),
             "samples": json.dumps([asdict(sample) for sample in self._samples]),
             "wall_seconds": self._wall_seconds(),
         }

@@ -18,10 +18,13 @@ from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, assemble
 from warpsph.solver.describe import describe
 from warpsph.solver.guards import check_state
-from warpsph.solver.schedule import frame_times
+from warpsph.solver.schedule import SAME_TIME, frame_times
 from warpsph.solver.step import Stepper, StepReport
 
 Callback = Callable[["Simulation"], None]
+
+ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
+"""State that `Simulation.array` hands out."""
 
 
 class Simulation:
@@ -34,9 +37,12 @@ class Simulation:
 
     Raises:
         SceneError: if the scene cannot be sampled or assembled.
+        ValueError: if `threads` is less than 1.
     """
 
     def __init__(self, scene: Scene, device: str | None = None, threads: int | None = None) -> None:
+        if threads is not None and threads < 1:
+            raise ValueError(f"threads is {threads}; allowed: a whole number at least 1, or None for all cores")
         self.scene = scene
         self._launcher = Launcher(device or default_device(), threads)
         try:
@@ -133,12 +139,19 @@ class Simulation:
         return report
 
     def advance(self, until: float) -> None:
-        """Advance to a time [s], on which the last step lands exactly."""
+        """Advance to a time [s], on which the last step lands exactly; a time already past makes no step.
+
+        Raises:
+            ValueError: if the time is not finite.
+            SimulationDiverged: see `step`.
+        """
         for _ in self.steps_until(until):
             pass
 
     def steps_until(self, until: float) -> Iterator[StepReport]:
-        """Make the steps to a time [s] one by one, and yield the report of each."""
+        """Make the steps to a time [s] one by one, and yield the report of each; raises as `advance` does."""
+        if not math.isfinite(until):
+            raise ValueError(f"cannot advance to t = {until} s; allowed: a finite time")
         self._stepper.set_clock(TARGET=until)
         try:
             while self.time < until:
@@ -147,19 +160,29 @@ class Simulation:
             self._stepper.set_clock(TARGET=math.inf)
 
     def run(self) -> None:
-        """Advance to the end of the scene and call the frame callbacks at every frame, the first included."""
-        self._show_frame()
-        for time in frame_times(self.scene)[self.frame_index + 1 :]:
-            self.advance(time)
-            self.frame_index += 1
-            self._show_frame()
+        """Advance to the end of the scene and call the frame callbacks at every frame from the present time on.
+
+        The frame of the present time is included, as the first one is at the start; frames that lie in the
+        past after `step`, `advance` or `load_state` are not.
+        """
+        present = self.time - SAME_TIME / self.scene.time.frame_rate
+        for index, time in enumerate(frame_times(self.scene)):
+            if time >= present:
+                self.advance(time)
+                self.frame_index = index
+                self._show_frame()
 
     def array(self, name: str) -> wp.array:
         """Return a state array on the device: a view, whose entries a step reorders but whose memory stays.
 
         `position`, `velocity_volume`, `density_deviation`, `acceleration`, `id` or `set_index`. Convert with
         `.numpy()` or through DLPack (`torch.from_dlpack`, `jax.dlpack.from_dlpack`): no copy on the same device.
+
+        Raises:
+            KeyError: if there is no such array.
         """
+        if name not in ARRAYS:
+            raise KeyError(f"no array {name!r}; there are {', '.join(ARRAYS)}")
         return getattr(self._parts.assembly.state, name)
 
     def frame(self, fields: Sequence[str] | None = None, ordered: bool = True) -> Frame:
@@ -167,6 +190,9 @@ class Simulation:
 
         Args:
             fields: position, velocity, pressure, volume; of fluids also density and mass, of walls also force.
+
+        Raises:
+            KeyError: if there is no such field.
         """
         self._stepper.synchronise()
         wanted = (
@@ -234,7 +260,10 @@ class Simulation:
             "mass": lambda: np.full(a.layout.total, a.constants.mass),
             "force": self._wall_force,
         }
-        return {name: makers[name]() for name in names} | {"id": self._host("id")}
+        unknown = sorted(names - {"id", *makers})
+        if unknown:
+            raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(makers)}, id")
+        return {name: makers[name]() for name in names - {"id"}} | {"id": self._host("id")}
 
     def _wall_force(self) -> np.ndarray:
         layout = self._parts.assembly.layout

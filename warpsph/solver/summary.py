@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import platform
+from collections import Counter
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -27,6 +28,16 @@ class StepStatistics:
         self.largest_speed = 0.0
         self.largest_compression = 0.0
         self.first: Ledger = measure_ledger(sim)
+        self._stages_before: dict[str, float] = {}
+        self._list_builds_before = 0
+
+    def stages(self, sim: Simulation) -> dict[str, float]:
+        """Return the seconds in each stage of the run, those before it was resumed included."""
+        return dict(Counter(self._stages_before) + Counter(sim.stages))
+
+    def list_builds(self, sim: Simulation) -> int:
+        """Return how often the run has made its neighbour lists, before it was resumed included."""
+        return self._list_builds_before + sim.list_builds
 
     def note(self, sim: Simulation) -> None:
         """Count the step that the simulation has just made."""
@@ -40,18 +51,21 @@ class StepStatistics:
         if step.limit != "frame":
             self._shortest, self._longest = min(self._shortest, step.dt), max(self._longest, step.dt)
 
-    def save(self) -> dict[str, Any]:
+    def save(self, sim: Simulation) -> dict[str, Any]:
         """Return everything as plain values."""
         plain = {key.lstrip("_"): value for key, value in vars(self).items() if key != "first"}
-        return plain | {"first": vars(self.first)}
+        past = {"stages_before": self.stages(sim), "list_builds_before": self.list_builds(sim)}
+        return plain | past | {"first": vars(self.first)}
 
-    def load(self, saved: dict[str, Any]) -> None:
-        """Take over what `save` returned."""
+    def load(self, saved: dict[str, Any], sim: Simulation) -> None:
+        """Take over what `save` returned; what the simulation has done so far is no part of the run."""
         self.count, self.particle_steps = saved["count"], saved["particle_steps"]
         self._shortest, self._longest, self._sum = saved["shortest"], saved["longest"], saved["sum"]
         self._ruling = dict(saved["ruling"])
         self.largest_speed, self.largest_compression = saved["largest_speed"], saved["largest_compression"]
         self.first = Ledger(**saved["first"])
+        self._stages_before = dict(saved["stages_before"])
+        self._list_builds_before = saved["list_builds_before"] - sim.list_builds
 
     def as_record(self) -> dict[str, Any]:
         """Return the statistics for the summary; steps shortened to land on a time do not count as shortest."""
@@ -69,7 +83,8 @@ def summarise(
 ) -> dict[str, Any]:
     """Return the summary of a run; `status` is complete, interrupted, failed or `diverged: ...`."""
     description = sim.describe()
-    stepping = sum(sim.stages.values())
+    stages = statistics.stages(sim)
+    stepping = sum(stages.values())
     return {
         "scene": sim.scene.name,
         "status": status,
@@ -83,10 +98,10 @@ def summarise(
         "simulated_s": sim.time,
         "frames": sim.frame_index + 1,
         "wall_s": wall_seconds,
-        "wall_s_by_stage": dict(sorted(sim.stages.items(), key=lambda item: -item[1])),
+        "wall_s_by_stage": dict(sorted(stages.items(), key=lambda item: -item[1])),
         "particle_steps_per_second": statistics.particle_steps / stepping if stepping else None,
         "steps": statistics.as_record(),
-        "list_builds": sim.list_builds,
+        "list_builds": statistics.list_builds(sim),
         "sound_speed_m_s": sim.sound_speed,
         "largest_mach": statistics.largest_speed / sim.sound_speed,
         "largest_compression": statistics.largest_compression,
