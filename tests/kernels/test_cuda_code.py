@@ -1,0 +1,39 @@
+"""All device code compiles for CUDA as well, which needs Warp's compiler but no GPU."""
+
+import pytest
+import warp as wp
+from warpsph_kernels import reorder
+from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.boundary import make_wall_kernels
+from warpsph_kernels.cells import make_cell_kernels
+from warpsph_kernels.clock import make_clock_kernels
+from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+
+SM_80 = 80
+
+
+@pytest.mark.parametrize(
+    ("dimension", "precision", "wall"), [(2, "double", "dynamic"), (3, "single", "extrapolated")]
+)
+def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
+    arithmetic = Arithmetic(dimension, precision)
+    periodic = (True,) + (False,) * (dimension - 1)
+    options = FluidOptions(
+        arithmetic=arithmetic,
+        periodic=periodic,
+        smoothing="wendland_c2",
+        state="tait",
+        pressure_form="symmetric",
+        density_diffusion="fourtakas",
+        viscosity="artificial",
+        wall=wall,
+        wall_suction=False,
+        wall_friction=True,
+    )
+    make_fluid_kernels(options)
+    make_wall_kernels(options)
+    cells = make_cell_kernels(arithmetic, periodic).module
+    clock = make_clock_kernels(arithmetic).module
+    for name in (options.module, cells, clock, reorder.MODULE):
+        wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
+    assert len(list(tmp_path.glob("*.ptx"))) == 4
