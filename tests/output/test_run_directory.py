@@ -42,3 +42,10 @@ def test_directory_that_cannot_be_made_is_an_error_with_path_and_reason(tmp_path
     (tmp_path / "file").write_text("")
     with pytest.raises(OutputError, match=r"file/run: cannot write: Not a directory"):
         create_run_directory(tmp_path / "file" / "run", tank_scene(2))
+
+
+def test_a_file_in_place_of_the_directory_is_called_a_file(tmp_path):
+    (tmp_path / "file").write_text("kept")
+    with pytest.raises(OutputError, match=r"this is a file; allowed: a directory"):
+        create_run_directory(tmp_path / "file", tank_scene(2))
+    assert (tmp_path / "file").read_text() == "kept"

@@ -8,6 +8,7 @@ import sys
 import time
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 from builders import still_tank
@@ -130,3 +131,43 @@ def test_a_diverging_run_says_where_and_keeps_its_frames(tmp_path):
     assert json.loads((tmp_path / "summary.json").read_text())["status"].startswith("diverged")
     assert read_checkpoint(tmp_path / "checkpoint.h5").state
     assert Usd.Stage.Open(str(tmp_path / "particles.usdc"))
+
+
+def test_the_cost_of_a_resumed_run_includes_what_came_before(tmp_path):
+    whole = run_scene(sloshing(), tmp_path / "whole", device="cpu")
+    run_scene(sloshing(), tmp_path / "parts", device="cpu")
+    again = run_scene(sloshing(), tmp_path / "parts", device="cpu", resume=True)  # nothing is left to do
+    before = json.loads((tmp_path / "whole/summary.json").read_text())
+    assert again["steps"]["count"] == whole["steps"]["count"]
+    assert again["list_builds"] == whole["list_builds"]
+    assert set(again["wall_s_by_stage"]) == set(before["wall_s_by_stage"])
+    steps_of_particles = again["particles"] * again["steps"]["count"]
+    seconds = sum(again["wall_s_by_stage"].values())
+    assert again["particle_steps_per_second"] == pytest.approx(steps_of_particles / seconds)
+    assert again["wall_s_by_stage"]["accelerate"] > 0.0
+    assert seconds < again["wall_s"] + 1.0
+
+
+def test_a_directory_may_be_named_by_a_string_and_a_run_has_at_least_one_frame(tmp_path):
+    assert run_scene(sloshing(), str(tmp_path / "run"), device="cpu", frames=1)["frames"] == 1
+    with pytest.raises(ValueError, match="frames is 0; allowed"):
+        run_scene(sloshing(), tmp_path / "none", device="cpu", frames=0)
+    assert not (tmp_path / "none").exists()
+
+
+def test_a_run_that_ended_between_two_frame_times_goes_on_in_both_stores(tmp_path):
+    run_scene(sloshing(end=0.12), tmp_path, device="cpu")  # frames 0, 1, 2 and, at the end, 3
+    run_scene(sloshing(end=0.2), tmp_path, device="cpu", resume=True)
+    expected = [0.0, 0.05, 0.1, 0.15, 0.2]
+    with h5py.File(tmp_path / "frames.h5") as file:
+        assert np.allclose(file["time"], expected, rtol=0.0, atol=1e-12)
+        assert len(file["frames"]) == 5
+    stage = Usd.Stage.Open(str(tmp_path / "particles.usdc"))
+    samples = UsdGeom.Points(stage.GetPrimAtPath("/still_tank/water")).GetPointsAttr().GetTimeSamples()
+    assert samples == [0.0, 1.0, 2.0, 3.0, 4.0]
+
+
+def test_a_checkpoint_from_after_the_end_is_refused(tmp_path):
+    run_scene(sloshing(end=0.2), tmp_path, device="cpu")
+    with pytest.raises(CheckpointError, match=r"it is of t = 0\.2 s, after time\.end = 0\.1 s"):
+        run_scene(sloshing(end=0.1), tmp_path, device="cpu", resume=True)

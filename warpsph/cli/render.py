@@ -39,7 +39,7 @@ def render(
 ) -> ExitCode:
     """Draw the frames of a run: a PNG each and one MP4, in the directory `render` beside the frames.
 
-    Needs no display and no graphics driver; install it with: pip install "warpsph[render]".
+    Needs the extra `render` of the package, but no display and no graphics driver.
     """
     from warpsph.cli.consoles import plain_console
     from warpsph.cli.warp_runtime import start_warp

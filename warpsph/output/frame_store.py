@@ -57,11 +57,15 @@ class FrameStore(Writer):
         self._frames = tuple(f for f in stored if f.time < (resume_time or 0.0) + self._time_tolerance)
 
     def write(self, frame: Frame) -> None:
-        """Add a frame; frames at its time or later are dropped. Raises OutputError; earlier frames stay."""
+        """Add a frame; frames at its time or later, or of its number, are dropped. Raises OutputError.
+
+        Another frame of its number is the last one of a run that ended between two frame times and goes on.
+        """
         part = self._parts / f"{frame.index:06d}{self._path.suffix}"
         self._write_part(frame, part)
         self._unpack()
-        earlier = (stored for stored in self._frames if stored.time < frame.time - self._time_tolerance)
+        before = frame.time - self._time_tolerance
+        earlier = (f for f in self._frames if f.time < before and f.index < frame.index)
         self._frames = (*earlier, StoredFrame(frame.index, frame.time, part))
         self._write_index(self._frames)
 

@@ -54,13 +54,13 @@ def create_run_directory(path: Path, scene: Scene, *, resume: bool = False) -> R
     Raises OutputError if the directory cannot be made or written.
     """
     directory = RunDirectory(path)
-    if path.exists() and not path.is_dir():
-        raise OutputError(path, "cannot write: this is a file; allowed: a directory, which is made if it is missing")
     try:
         path.mkdir(parents=True, exist_ok=True)
         if not resume:
             directory.summary.unlink(missing_ok=True)
             directory.checkpoint.unlink(missing_ok=True)
+    except FileExistsError as error:
+        raise OutputError(path, "this is a file; allowed: a directory, made if it is missing") from error
     except OSError as error:
         raise OutputError(path, f"cannot write: {reason_of(error)}") from error
     write_atomically(directory.scene, scene.to_yaml(directory.path).encode())

@@ -5,6 +5,7 @@ files. Once packed, it is a single crate file.
 """
 
 import contextlib
+import math
 import re
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -110,7 +111,7 @@ class UsdStore(FrameStore):
         layer.endTimeCode = self._time_code(frames[-1].time)
 
     def _stored(self, time_code: float, file: Path) -> StoredFrame:
-        return StoredFrame(round(time_code), time_code / self._scene.time.frame_rate, file)
+        return StoredFrame(math.ceil(time_code), time_code / self._scene.time.frame_rate, file)
 
     def _time_code(self, time: float) -> float:
         time_code = time * self._scene.time.frame_rate

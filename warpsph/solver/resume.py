@@ -13,6 +13,14 @@ FREE_KEYS = {"description", "references", "validation"}
 """Keys that may differ between the checkpoint's scene and the one that goes on."""
 
 
+def require_time_left(scene: Scene, time: float, path: Path) -> None:
+    """Raise CheckpointError if the checkpoint is of a time [s] after the end of the scene."""
+    if time > scene.time.end:
+        raise CheckpointError(
+            path, f"it is of t = {time:.6g} s, after time.end = {scene.time.end:.6g} s; allowed: a later end"
+        )
+
+
 def require_same_run(scene: Scene, checkpoint_text: str, path: Path) -> None:
     """Raise CheckpointError unless the checkpoint was written by the same scene; only its end may be later."""
     yaml = YAML(typ="safe", pure=True)

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
+from warpsph_kernels.clock import TIME
 
 from warpsph.comparison.compare import FieldSample, compare_run, field_samples, fields_needed
 from warpsph.frame import Frame
@@ -21,7 +22,7 @@ from warpsph.probes import make_probe
 from warpsph.scene.schema import Scene
 from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.interruption import Interruption
-from warpsph.solver.resume import require_same_run
+from warpsph.solver.resume import require_same_run, require_time_left
 from warpsph.solver.schedule import Stop, schedule
 from warpsph.solver.simulation import Simulation
 from warpsph.solver.summary import StepStatistics, summarise
@@ -70,6 +71,9 @@ def run_scene(
     saved = read_checkpoint(out / RunDirectory(out).checkpoint.name) if resume else None
     if saved is not None:
         require_same_run(scene, saved.scene_text, RunDirectory(out).checkpoint)
+        require_time_left(
+            scene, float(saved.state["simulation"]["clock"][TIME]), RunDirectory(out).checkpoint
+        )
     run = _Run(sim, create_run_directory(out, scene, resume=resume), reporter)
     if saved is not None:
         run.restore(saved.state)

@@ -42,7 +42,9 @@ class Simulation:
 
     def __init__(self, scene: Scene, device: str | None = None, threads: int | None = None) -> None:
         if threads is not None and threads < 1:
-            raise ValueError(f"threads is {threads}; allowed: a whole number at least 1, or None for all cores")
+            raise ValueError(
+                f"threads is {threads}; allowed: a whole number at least 1, or None for all cores"
+            )
         self.scene = scene
         self._launcher = Launcher(device or default_device(), threads)
         try:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import platform
-from collections import Counter
 from collections.abc import Sequence
 from importlib.metadata import PackageNotFoundError, version
 from typing import Any
@@ -33,7 +32,8 @@ class StepStatistics:
 
     def stages(self, sim: Simulation) -> dict[str, float]:
         """Return the seconds in each stage of the run, those before it was resumed included."""
-        return dict(Counter(self._stages_before) + Counter(sim.stages))
+        before, now = self._stages_before, sim.stages
+        return {stage: before.get(stage, 0.0) + now.get(stage, 0.0) for stage in {**before, **now}}
 
     def list_builds(self, sim: Simulation) -> int:
         """Return how often the run has made its neighbour lists, before it was resumed included."""
