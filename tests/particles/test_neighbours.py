@@ -34,7 +34,10 @@ def search(
     fluids = len(points) - walls
     ranges = [(0, fluids), (fluids, walls)] if walls else [(0, fluids)]
     pairs = [(0, [0, 1]), (1, [0])] if walls else [(0, [0])]
-    found = NeighbourSearch(launcher, arithmetic, space, ranges, pairs, RADIUS, SKIN, spacing, position)
+    removable = [True, False][: len(ranges)]
+    found = NeighbourSearch(
+        launcher, arithmetic, space, ranges, removable, pairs, RADIUS, SKIN, spacing, position
+    )
     found.take_positions([True] * len(ranges))
     removed = 0
     for k, table in enumerate(found.tables):
@@ -118,6 +121,17 @@ def test_kill_box_removes_and_counts():
     assert removed == 7
     assert found.tables[0].count == 193
     assert set(ids[:193]) == set(range(7, 200))
+
+
+def test_walls_outside_the_kill_box_stay():
+    points = np.random.default_rng(8).random((300, 2))
+    space = make_space(2, (False, False), kill=0.5)
+    found, ids, removed = search(points, space, walls=100)
+    inside = np.flatnonzero(np.all(points[:200] <= 0.5, axis=1))
+    assert removed == 200 - len(inside)
+    assert found.tables[1].count == 100
+    expected = {(i, j) for i, j in brute_force(points, space, range(200), range(200, 300)) if i in inside}
+    assert listed_pairs(found, ids, 0, 1) == expected
 
 
 def test_no_particles_at_all():

@@ -163,3 +163,11 @@ def test_kill_box_removes_and_counts():
     assert sim.removed_count > 0
     assert water.count == 100 - sim.removed_count
     assert len(set(water.fields["id"])) == water.count
+
+
+def test_a_kill_box_takes_fluid_and_leaves_walls():
+    kill_box = {"min": (0.0, 0.0), "max": (0.5, 0.75)}
+    sim = Simulation(still_tank(domain={"kill_box": kill_box}), device="cpu")
+    sim.advance(0.1)
+    assert sim.removed_count == 0
+    assert sim.sets == Simulation(still_tank(), device="cpu").sets

@@ -98,8 +98,9 @@ class NeighbourSearch:
     """Keeps particles sorted by cell and lists their neighbours within `radius + skin`.
 
     Args:
-        tables: (first, count) of each particle range that is searched in.
-        pairs: (target range, source ranges) of each list, by position in `tables`.
+        ranges: (first, count) of each particle range that is searched in.
+        removable: whether a range's particles leave the run outside of the kill box.
+        pairs: (target range, source ranges) of each list, by position in `ranges`.
         radius, skin: metres. Lists stay complete while no particle has moved more than half the skin.
         position: master positions of all particles, (n,) double vectors [m].
     """
@@ -110,6 +111,7 @@ class NeighbourSearch:
         arithmetic: Arithmetic,
         space: SearchSpace,
         ranges: Sequence[tuple[int, int]],
+        removable: Sequence[bool],
         pairs: Sequence[tuple[int, Sequence[int]]],
         radius: float,
         skin: float,
@@ -140,7 +142,9 @@ class NeighbourSearch:
             Reordered(launcher, self.listed_position, table, table.first) for table in self.tables
         ]
         self._take = [self._bind_take(table, position) for table in self.tables]
-        self._assign = [self._bind_assign(table) for table in self.tables]
+        self._assign = [
+            self._bind_assign(table, leaves) for table, leaves in zip(self.tables, removable, strict=True)
+        ]
 
     def take_positions(self, moving: Sequence[bool]) -> None:
         """Note the present positions of the tables that move, as those that the next lists are made from."""
@@ -225,15 +229,18 @@ class NeighbourSearch:
             self.listed_position,
         )
 
-    def _bind_assign(self, table: CellTable) -> Pass:
+    def _bind_assign(self, table: CellTable, leaves: bool) -> Pass:
         space, vector = self.space, self.arithmetic.vector
+        everywhere = np.full(self.arithmetic.dimension, np.inf)
+        low = space.kill_low - space.origin if leaves else -everywhere
+        high = space.kill_high - space.origin if leaves else everywhere
         return self._launcher.bind(
             "sort",
             self._kernels.assign_cells,
             self.listed_position,
             table.first,
-            vector(*(space.kill_low - space.origin)),
-            vector(*(space.kill_high - space.origin)),
+            vector(*low),
+            vector(*high),
             self.grid,
             table.key,
             table.order,

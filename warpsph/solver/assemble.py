@@ -105,16 +105,18 @@ def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
 
 def _make_search(scene: Scene, assembly: Assembly) -> NeighbourSearch:
     layout, radius = assembly.layout, scene.support_radius
-    ranges = [(0, layout.fluids)]
+    ranges, removable = [(0, layout.fluids)], [True]
     pairs: list[tuple[int, list[int]]] = [(FLUID, [FLUID])]
     if layout.walls:
         ranges.append((layout.fluids, layout.walls))
+        removable.append(False)
         pairs = [(FLUID, [FLUID, WALL]), (WALL, [FLUID])]
     return NeighbourSearch(
         assembly.launcher,
         assembly.options.arithmetic,
         assembly.space,
         ranges,
+        removable,
         pairs,
         radius=radius,
         skin=scene.numerics.skin * radius,
