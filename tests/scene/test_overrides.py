@@ -3,7 +3,7 @@
 import pytest
 from scene_texts import DAM_BREAK, problems_of
 
-from warpsph.scene import scene_from_yaml
+from warpsph.scene import load_scene, scene_from_yaml
 from warpsph.scene.numerics import FourtakasDiffusion, LaminarViscosity
 from warpsph.scene.shapes import Sphere
 
@@ -85,3 +85,7 @@ def test_a_wrong_override_is_refused_by_its_name(override: str, key: str, messag
 
 def test_all_wrong_overrides_are_reported_at_once() -> None:
     assert len(problems_of(DAM_BREAK, ["spacing.x=1", "time..end=1", "output.fields.9=mass"])) == 3
+
+
+def test_a_single_override_may_stand_without_a_list() -> None:
+    assert load_scene("dam_break_2d", "spacing=0.1").spacing == 0.1

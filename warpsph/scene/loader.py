@@ -20,14 +20,15 @@ from warpsph.scene.schema import Scene
 from warpsph.scene.tables import TableError, read_columns
 
 
-def load_scene(path_or_name: str | Path, overrides: Sequence[str] = ()) -> Scene:
-    """The scene of a YAML file, or the shipped scene of that name, with overrides `key.sub=value`.
+def load_scene(path_or_name: str | Path, overrides: str | Sequence[str] = ()) -> Scene:
+    """The scene of a YAML file, or the shipped scene of that name, with one override `key.sub=value` or several.
 
     Raises SceneError with every problem at once, each with its line, key, value and what is allowed.
     """
     path = _scene_file(path_or_name)
     document = parse(decode(_content(path), str(path)), str(path))
-    return _scene(document, path.absolute().parent, overrides)
+    several = [overrides] if isinstance(overrides, str) else overrides
+    return _scene(document, path.absolute().parent, several)
 
 
 def scene_from_yaml(text: str, base_directory: Path | None = None, overrides: Sequence[str] = ()) -> Scene:
