@@ -1,4 +1,4 @@
-"""Kernels of walls: prescribed motion, pressure and velocity seen by the fluid, and the force on a wall.
+"""Kernels of walls: pressure and velocity seen by the fluid, and the force on a wall.
 
 A wall particle's row of the neighbour list holds fluid in segment 0.
 """
@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import warp as wp
 
-from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation, make_widen
+from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.fluid import FluidOptions, make_pair_force
 from warpsph_kernels.pair_terms import make_barrier, make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
@@ -18,9 +18,6 @@ from warpsph_kernels.state import STATES
 class WallKernels(NamedTuple):
     """Kernels of walls, in the order of a step."""
 
-    find_normals: Any
-    keep_surface: Any
-    move: Any
     extrapolate: Any
     set_pressure: Any
     update_density: Any
@@ -28,122 +25,20 @@ class WallKernels(NamedTuple):
 
 
 @cache
-def make_pose_struct(arithmetic: Arithmetic) -> Any:
-    """Return the struct of a motion x = A X + b at one time, with the first and second time derivatives of A and b."""
-    dim, point = arithmetic.dimension, arithmetic.point
-    matrix = wp.types.matrix((dim, dim), wp.float64)
-
-    class Pose:
-        pass
-
-    Pose.__annotations__ = {
-        "rotation": matrix,
-        "shift": point,
-        "rotation_rate": matrix,
-        "shift_rate": point,
-        "rotation_acceleration": matrix,
-        "shift_acceleration": point,
-    }
-    return wp.struct(Pose)
-
-
-@cache
 def make_wall_kernels(options: FluidOptions) -> WallKernels:
     """Return the kernels of walls specialised for the options."""
     arithmetic = options.arithmetic
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
-    record, point = arithmetic.record, arithmetic.point
+    record = arithmetic.record
     module = options.module
-    constants_type, pose_type = make_constants_struct(arithmetic), make_pose_struct(arithmetic)
+    constants_type = make_constants_struct(arithmetic)
     pack, unpack = make_packing(arithmetic)
-    narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     shape, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
     state = STATES[options.state](arithmetic)
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     barrier = make_barrier(arithmetic)
-
-    @wp.kernel(module=module, enable_backward=False)
-    def find_normals(
-        offset: int,
-        c: constants_type,
-        first_wall: int,
-        neighbours: wp.array2d(dtype=wp.int32),
-        ends: wp.array2d(dtype=wp.int32),
-        listed_position: wp.array(dtype=vector),
-        normal: wp.array(dtype=vector),
-    ):
-        """One wall particle: the unit vector away from the other wall particles, -sum_b V_b grad W_ab normalised.
-
-        Here the rows hold walls, as also for `keep_surface`.
-        """
-        i = offset + wp.tid()
-        x_a = listed_position[first_wall + i]
-        gradient = vector()
-        for n in range(ends[i, 0]):
-            x_ab = separation(x_a, listed_position[neighbours[i, n]], c.period)
-            gradient += slope(wp.length(x_ab) * c.inverse_h) * x_ab
-        normal[i] = -wp.normalize(gradient)
-
-    @wp.kernel(module=module, enable_backward=False)
-    def keep_surface(
-        offset: int,
-        c: constants_type,
-        spacing: real,
-        first_wall: int,
-        neighbours: wp.array2d(dtype=wp.int32),
-        ends: wp.array2d(dtype=wp.int32),
-        listed_position: wp.array(dtype=vector),
-        normal: wp.array(dtype=vector),
-    ):
-        """One wall particle: forget the normal if another lies around the point one spacing along it.
-
-        The test by an empty place ahead is that of Marrone et al. (2010), for free surfaces.
-        """
-        i = offset + wp.tid()
-        ahead = listed_position[first_wall + i] + spacing * normal[i]
-        is_surface = bool(True)
-        for n in range(ends[i, 0]):
-            gap = separation(ahead, listed_position[neighbours[i, n]], c.period)
-            if wp.length(gap) < real(0.85) * spacing:
-                is_surface = False
-        if not is_surface:
-            normal[i] = vector()
-
-    @wp.kernel(module=module, enable_backward=False)
-    def move(
-        offset: int,
-        first_wall: int,
-        wall_volume: real,
-        origin: point,
-        poses: wp.array(dtype=pose_type),
-        set_index: wp.array(dtype=wp.int32),
-        reference: wp.array(dtype=point),
-        reference_normal: wp.array(dtype=vector),
-        position: wp.array(dtype=point),
-        velocity_volume: wp.array(dtype=record),
-        position_pressure: wp.array(dtype=record),
-        position_density: wp.array(dtype=record),
-        acceleration: wp.array(dtype=vector),
-        normal: wp.array(dtype=vector),
-    ):
-        """One wall particle: place it by the pose of its set, with the exact velocity and acceleration."""
-        i = offset + wp.tid()
-        b = first_wall + i
-        pose = poses[set_index[b]]
-        X = reference[i]
-        x = pose.rotation * X + pose.shift
-        v = pose.rotation_rate * X + pose.shift_rate
-        a = pose.rotation_acceleration * X + pose.shift_acceleration
-        x_run = narrow(x, origin)
-        zero = point()
-        position[b] = x
-        velocity_volume[b] = pack(narrow(v, zero), wall_volume)
-        position_pressure[b] = pack(x_run, position_pressure[b][dim])
-        position_density[b] = pack(x_run, position_density[b][dim])
-        acceleration[b] = narrow(a, zero)
-        normal[i] = narrow(pose.rotation * widen(reference_normal[i]), zero)
 
     @wp.kernel(module=module, enable_backward=False)
     def extrapolate(
@@ -280,4 +175,4 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
             total += vV_b[dim] * pair
         force[i] = c.wall_volume * total
 
-    return WallKernels(find_normals, keep_surface, move, extrapolate, set_pressure, update_density, react)
+    return WallKernels(extrapolate, set_pressure, update_density, react)

@@ -8,6 +8,8 @@ from warpsph_kernels.boundary import make_wall_kernels
 from warpsph_kernels.cells import make_cell_kernels
 from warpsph_kernels.clock import make_clock_kernels
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.wall_motion import make_move
+from warpsph_kernels.wall_surface import make_surface_kernels
 
 SM_80 = 80
 
@@ -32,6 +34,8 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     )
     make_fluid_kernels(options)
     make_wall_kernels(options)
+    make_move(options)
+    make_surface_kernels(options)
     cells = make_cell_kernels(arithmetic, periodic).module
     clock = make_clock_kernels(arithmetic).module
     for name in (options.module, cells, clock, reorder.MODULE):

@@ -8,7 +8,9 @@ from typing import Any
 import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.boundary import make_pose_struct, make_wall_kernels
+from warpsph_kernels.boundary import make_wall_kernels
+from warpsph_kernels.wall_motion import make_move, make_pose_struct
+from warpsph_kernels.wall_surface import make_surface_kernels
 
 from warpsph.particles.launch import Pass
 from warpsph.particles.neighbours import NeighbourRows
@@ -41,7 +43,10 @@ class WallModel:
         self._assembly = assembly
         self._lists = lists
         self._motions = dict(motions)
+        # All made before the first launch: a kernel that joins its module later compiles the module anew.
         self._kernels = make_wall_kernels(assembly.options)
+        self._move_kernel = make_move(assembly.options)
+        self._surface_kernels = make_surface_kernels(assembly.options)
         arithmetic, device = assembly.options.arithmetic, assembly.launcher.device
         self._pose_type = make_pose_struct(arithmetic)
         self._poses = wp.zeros(sets, dtype=self._pose_type, device=device)
@@ -104,9 +109,10 @@ class WallModel:
         a, real = self._assembly, self._assembly.options.arithmetic.real
         first = a.layout.fluids
         lists = (rows.index, rows.ends, listed_position, self.reference_normal)
-        bind, kernels = a.launcher.bind, self._kernels
-        bind("wall surface", kernels.find_normals, a.constants, first, *lists).run(self.count)
-        bind("wall surface", kernels.keep_surface, a.constants, real(spacing), first, *lists).run(self.count)
+        find_normals, keep_surface = self._surface_kernels
+        bind = a.launcher.bind
+        bind("wall surface", find_normals, a.constants, first, *lists).run(self.count)
+        bind("wall surface", keep_surface, a.constants, real(spacing), first, *lists).run(self.count)
 
     def start(self) -> None:
         """Give dynamic walls the density at which they are in equilibrium with the fluid before them."""
@@ -137,7 +143,7 @@ class WallModel:
         kernels, bind = self._kernels, a.launcher.bind
         self._move = bind(
             "move walls",
-            kernels.move,
+            self._move_kernel,
             first,
             a.constants.wall_volume,
             a.origin,
