@@ -16,7 +16,10 @@ from warpsph.solver.step import Stepper, StepReport
 LARGEST_MACH = 2.0
 """Speed over sound speed at which a weakly compressible run is stopped."""
 LARGEST_COMPRESSION = 0.5
-"""|rho/rho0 - 1| at which it is stopped."""
+"""rho/rho0 - 1 at which it is stopped."""
+LARGEST_EXPANSION = 0.95
+"""1 - rho/rho0 at which it is stopped. A drop that leaves the bulk alone loses the density of its former
+neighbours, which is more than half of its own, and means no harm."""
 
 
 def check_state(
@@ -38,16 +41,22 @@ def check_state(
             speed,
         )
     if stepper.compression > LARGEST_COMPRESSION:
-        deviation = np.abs(host_view(parts.assembly.state.density_deviation)) / c.rest_density
-        _stop(
-            parts,
-            sets,
-            stepper,
-            step_count,
-            report,
-            f"its density is off by more than {LARGEST_COMPRESSION:.0%}",
-            deviation,
-        )
+        _check_density(parts, sets, stepper, step_count, report)
+
+
+def _check_density(
+    parts: Parts, sets: Sequence[SampledSet], stepper: Stepper, step_count: int, report: StepReport
+) -> None:
+    deviation = host_view(parts.assembly.state.density_deviation) / parts.assembly.constants.rest_density
+    index = np.arange(len(deviation))
+    alive = (index < parts.fluid.count) | (index >= parts.assembly.layout.fluids)
+    compression, expansion = np.where(alive, deviation, 0.0), np.where(alive, -deviation, 0.0)
+    if compression.max() > LARGEST_COMPRESSION:
+        limit = f"its density is above that at rest by more than {LARGEST_COMPRESSION:.0%}"
+        _stop(parts, sets, stepper, step_count, report, limit, compression)
+    if expansion.max() > LARGEST_EXPANSION:
+        limit = f"its density is below that at rest by more than {LARGEST_EXPANSION:.0%}"
+        _stop(parts, sets, stepper, step_count, report, limit, expansion)
 
 
 def _velocity(parts: Parts) -> np.ndarray:

@@ -72,6 +72,7 @@ class Stepper:
         self._host_clock = host_view(self._clock)
         if self._walls:
             self._walls.place(self.time)
+        self.forget_removed()
         self.make_lists(all_tables=True)
         self.synchronise()
         self.survey()
@@ -134,7 +135,10 @@ class Stepper:
         """Sort and list from the positions last taken."""
         moving = [True] * len(self._search.tables) if all_tables else self._moving_tables()
         capacities = [rows.capacity for rows in self._search.rows]
+        before = self._fluid.count
         self.removed += self._search.sort(FLUID, self._parts.fluid_arrays)
+        if self._fluid.count < before:
+            self.forget_removed()
         if len(moving) > WALL and moving[WALL]:
             self._search.sort(WALL, self._parts.wall_arrays)
         self._search.list_neighbours()
@@ -142,6 +146,10 @@ class Stepper:
             self._fluid.bind_lists()
             if self._walls:
                 self._walls.bind_lists()
+
+    def forget_removed(self) -> None:
+        """Survey only the particles that are alive: those that left must not limit the step."""
+        self._survey_fluid = self._bind_survey(0, self._fluid.count, 0)
 
     def synchronise(self) -> None:
         """Bring pressures to the time of the positions, for output."""
@@ -208,6 +216,7 @@ class Stepper:
                 extremes,
             )
 
+        self._bind_survey = bind_survey
         self._survey_fluid = bind_survey(0, a.layout.fluids, 0)
         self._survey_walls = bind_survey(a.layout.fluids, a.layout.walls, self._fluid_blocks)
         limits = step_limits(scene, float(a.constants.sound_speed))
