@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from builders import GRAVITY, free_drop, still_tank
 
+from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.simulation import Simulation
 
 
@@ -191,3 +192,11 @@ def test_particles_that_left_do_not_limit_the_step():
     sim.step()
     assert sim.largest_speed < 1.0
     assert sim.step().dt > 1.3 * first
+
+    # Nor does a fault name one of them: the sound speed is 10 m/s, and it is the living particle that is too fast.
+    velocity = sim.array("velocity_volume").numpy()
+    velocity[-1, 0], velocity[0, 0] = 1000.0, 25.0
+    with pytest.raises(SimulationDiverged) as failure:
+        sim.advance(sim.time + 0.1)
+    assert failure.value.set == "water"
+    assert failure.value.value < 100.0

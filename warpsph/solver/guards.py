@@ -48,15 +48,20 @@ def _check_density(
     parts: Parts, sets: Sequence[SampledSet], stepper: Stepper, step_count: int, report: StepReport
 ) -> None:
     deviation = host_view(parts.assembly.state.density_deviation) / parts.assembly.constants.rest_density
-    index = np.arange(len(deviation))
-    alive = (index < parts.fluid.count) | (index >= parts.assembly.layout.fluids)
-    compression, expansion = np.where(alive, deviation, 0.0), np.where(alive, -deviation, 0.0)
+    compression, expansion = _of_the_living(parts, deviation), _of_the_living(parts, -deviation)
     if compression.max() > LARGEST_COMPRESSION:
         limit = f"its density is above that at rest by more than {LARGEST_COMPRESSION:.0%}"
         _stop(parts, sets, stepper, step_count, report, limit, compression)
     if expansion.max() > LARGEST_EXPANSION:
         limit = f"its density is below that at rest by more than {LARGEST_EXPANSION:.0%}"
         _stop(parts, sets, stepper, step_count, report, limit, expansion)
+
+
+def _of_the_living(parts: Parts, measure: np.ndarray) -> np.ndarray:
+    """Return a measure without particles that left the kill box, whose last state stays behind the living."""
+    living = measure.copy()
+    living[parts.fluid.count : parts.assembly.layout.fluids] = -np.inf
+    return living
 
 
 def _velocity(parts: Parts) -> np.ndarray:
@@ -80,7 +85,7 @@ def _stop(
     measure: np.ndarray,
 ) -> None:
     state = parts.assembly.state
-    worst = int(np.argmax(measure[: parts.assembly.layout.total]))
+    worst = int(np.argmax(_of_the_living(parts, measure)))
     found = float(measure[worst])
     raise SimulationDiverged(
         set=sets[int(host_view(state.set_index)[worst])].name,
