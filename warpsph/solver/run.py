@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from warpsph_kernels.clock import TIME
 
 from warpsph.comparison.compare import FieldSample, compare_run, field_samples, fields_needed
 from warpsph.frame import Frame
@@ -71,9 +70,8 @@ def run_scene(
     saved = read_checkpoint(out / RunDirectory(out).checkpoint.name) if resume else None
     if saved is not None:
         require_same_run(scene, saved.scene_text, RunDirectory(out).checkpoint)
-        require_time_left(
-            scene, float(saved.state["simulation"]["clock"][TIME]), RunDirectory(out).checkpoint
-        )
+        time_saved = float(saved.state["simulation"]["time"])
+        require_time_left(scene, time_saved, RunDirectory(out).checkpoint)
     run = _Run(sim, create_run_directory(out, scene, resume=resume), reporter)
     if saved is not None:
         run.restore(saved.state)
