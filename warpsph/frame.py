@@ -15,10 +15,14 @@ FIELD_UNITS: dict[str, str] = {
     "mass": "kg",
     "volume": "m3",
     "force": "N",
+    "displacement": "m",
+    "reaction": "N",
+    "cauchy_stress": "Pa",
+    "von_mises": "Pa",
 }
 """Units of the fields in three dimensions; see `field_unit` for the plane."""
 
-_PER_METRE_DEPTH = {"mass": "kg/m", "volume": "m2", "force": "N/m"}
+_PER_METRE_DEPTH = {"mass": "kg/m", "volume": "m2", "force": "N/m", "reaction": "N/m"}
 
 
 def field_unit(name: str, dimension: int) -> str:

@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from warpsph.scene.structures import StructureNumerics
 from warpsph.scene.types import Flag, NonNegativeReal, PositiveReal, Real, SceneModel
 
 SUPPORT_OVER_H: Mapping[str, float] = {"wendland_c2": 2.0}
@@ -121,6 +122,9 @@ class Numerics(SceneModel):
 
     wall: WallMethod = ExtrapolatedWall()
     """How walls act on the fluid. Default: {type: extrapolated}."""
+
+    structure: StructureNumerics = StructureNumerics()
+    """The scheme of structures. Default: every default of its keys."""
 
     skin: NonNegativeReal = 0.15
     """Margin of the neighbour lists, in support radii [1]. Default: 0.15."""

@@ -21,6 +21,7 @@ from warpsph.solver.step import Stepper
 from warpsph.solver.system import StepReport, in_order
 
 ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
+FIELDS = ("position", "velocity", "density", "pressure", "volume", "mass", "force", "id")
 USUAL_FIELDS = ("position", "velocity", "density", "pressure", "mass")
 NOTABLE_MACH = 0.2
 """Speed over sound speed from which compressibility shows (density errors of four per cent)."""
@@ -67,6 +68,10 @@ class FluidSystem:
     def extremes(self) -> Mapping[str, float]:
         """Largest speed [m/s] and |rho/rho0 - 1|."""
         return {"speed": self._stepper.speed, "compression": self._stepper.compression}
+
+    @property
+    def fields(self) -> frozenset[str]:
+        return frozenset(FIELDS)
 
     @property
     def arrays(self) -> Mapping[str, wp.array]:

@@ -176,7 +176,8 @@ class _Run:
         return self._sim.frame(self._probe_fields, ordered=False)
 
     def _frame_fields(self) -> list[str]:
-        return sorted({*self._scene.output.fields, *fields_needed(self._scene), "velocity"})
+        asked = self._sim.system.fields.intersection(self._scene.output.fields)
+        return sorted({*asked, *fields_needed(self._scene), "velocity"})
 
     def _write_checkpoint(self) -> None:
         state = {

@@ -16,6 +16,7 @@ from warpsph.scene.schema import Scene
 from warpsph.solver.fluid_system import FluidSystem
 from warpsph.solver.ledger import Ledger
 from warpsph.solver.schedule import SAME_TIME, frame_times
+from warpsph.solver.structure_system import StructureSystem
 from warpsph.solver.system import StepReport, System
 
 Callback = Callable[["Simulation"], None]
@@ -214,7 +215,8 @@ class Simulation:
 
 def make_system(scene: Scene, launcher: Launcher) -> System:
     """Sample the particles of a scene and assemble what advances them. Raises SceneError."""
-    return FluidSystem(scene, sample(scene), launcher)
+    kind = FluidSystem if scene.fluids else StructureSystem
+    return kind(scene, sample(scene), launcher)
 
 
 def default_device() -> str:

@@ -57,6 +57,10 @@ class System(Protocol):
         """Largest values at the last choice of a step, by name; `speed` [m/s] is always there."""
 
     @property
+    def fields(self) -> frozenset[str]:
+        """Names of the fields that frames can carry."""
+
+    @property
     def arrays(self) -> Mapping[str, wp.array]:
         """State arrays that a user may look at, by name."""
 

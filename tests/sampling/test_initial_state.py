@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from warpsph.sampling.fluids import initial_pressure, initial_velocity
+from warpsph.sampling.initial_state import initial_field, initial_pressure
 from warpsph.scene.errors import SceneError
 from warpsph.scene.schema import Fluid
 
@@ -43,17 +43,17 @@ def test_uniform_pressure() -> None:
 
 def test_velocity_from_numbers_and_expressions() -> None:
     x, y = CELLS.T
-    velocity = initial_velocity(fluid(velocity=["sin(pi*x)*y", -2.0]), CELLS, "fluids.water")
+    velocity = initial_field(fluid(velocity=["sin(pi*x)*y", -2.0]).velocity, CELLS, "fluids.water.velocity")
     assert velocity == pytest.approx(np.stack([np.sin(np.pi * x) * y, np.full(100, -2.0)], axis=1))
 
 
 def test_fluid_is_at_rest_by_default() -> None:
-    assert not initial_velocity(fluid(), CELLS, "fluids.water").any()
+    assert not initial_field(fluid().velocity, CELLS, "fluids.water.velocity").any()
 
 
 def test_velocity_that_is_not_finite_is_refused_with_its_place() -> None:
     with pytest.raises(SceneError) as refused:
-        initial_velocity(fluid(velocity=[0.0, "1/(x-0.05)"]), CELLS, "fluids.water")
+        initial_field(fluid(velocity=[0.0, "1/(x-0.05)"]).velocity, CELLS, "fluids.water.velocity")
     (problem,) = refused.value.problems
     assert problem.key == "fluids.water.velocity.1"
     assert problem.value == "1/(x-0.05)"

@@ -1,4 +1,4 @@
-"""Initial state of the fluids on their lattice."""
+"""Initial state of fluids and structures on their lattice."""
 
 from __future__ import annotations
 
@@ -7,31 +7,29 @@ from collections.abc import Sequence
 import numpy as np
 
 from warpsph.scene.errors import Problem, SceneError
-from warpsph.scene.expressions import evaluate
+from warpsph.scene.expressions import VectorField, evaluate
 from warpsph.scene.schema import Fluid
 from warpsph.scene.types import AXES
 
 
-def initial_velocity(fluid: Fluid, position: np.ndarray, key: str) -> np.ndarray:
-    """Velocity (n, dimension) [m/s] at positions (n, dimension) [m], from numbers or expressions in x, y, z.
+def initial_field(field: VectorField | None, position: np.ndarray, key: str) -> np.ndarray:
+    """A vector (n, dimension) at positions (n, dimension) [m], from numbers or expressions in x, y, z; None is zero.
 
-    Raises SceneError, naming the fluid's `key`, where an expression is not a finite number.
+    Raises SceneError, naming the field's `key`, where an expression is not a finite number.
     """
-    if fluid.velocity is None:
+    if field is None:
         return np.zeros_like(position)
     coordinates = dict(zip(AXES, position.T, strict=False))
-    velocity = np.empty_like(position)
-    for component, value in enumerate(fluid.velocity):
-        velocity[:, component] = evaluate(value, coordinates) if isinstance(value, str) else value
-        undefined = ~np.isfinite(velocity[:, component])
+    vector = np.empty_like(position)
+    for component, value in enumerate(field):
+        vector[:, component] = evaluate(value, coordinates) if isinstance(value, str) else value
+        undefined = ~np.isfinite(vector[:, component])
         if undefined.any():
             at = ", ".join(f"{x:g}" for x in position[undefined][0])
             message = f"it is not a finite number at {undefined.sum()} particles, first at ({at})"
-            problem = Problem.at(
-                f"{key}.velocity.{component}", message, "finite everywhere in the fluid", value
-            )
+            problem = Problem.at(f"{key}.{component}", message, "finite at every particle", value)
             raise SceneError([problem])
-    return velocity
+    return vector
 
 
 def initial_pressure(
