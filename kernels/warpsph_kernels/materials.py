@@ -92,6 +92,48 @@ def make_log1p(arithmetic: Arithmetic) -> Any:
 
 
 @cache
+def make_expm1(arithmetic: Arithmetic) -> Any:
+    """Return the device function exp(x) - 1 that keeps the digits of a small x, as 2 t / (1 - t) with t = tanh(x/2)."""
+    real = arithmetic.real
+
+    def expm1(x: real):
+        t = wp.tanh(real(0.5) * x)
+        return real(2.0) * t / (real(1.0) - t)
+
+    return wp.func(expm1)
+
+
+@cache
+def make_energy_parts(arithmetic: Arithmetic) -> tuple[Any, Any]:
+    """Return two device functions from which energies are summed up without a difference of large numbers.
+
+    `excess(H)` = tr(F F^T - I) - 2 (J - 1), of second order in H; `log1p_rest(x)` = x - log(1 + x), of second order
+    in x: a series in s = x / (2 + x) where x is small, because log(1 + x) = 2 artanh(s).
+    """
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    log1p = make_log1p(arithmetic)
+    terms = 5 if arithmetic.precision == "single" else 12
+
+    def excess(H: matrix):
+        value = wp.ddot(H, H) - real(2.0) * wp.determinant(H)
+        if wp.static(dim == 3):
+            value += wp.trace(H * H) - wp.trace(H) * wp.trace(H)
+        return value
+
+    def log1p_rest(x: real):
+        rest = x - log1p(x)
+        if wp.abs(x) < real(0.25):
+            s = x / (real(2.0) + x)
+            series = real(0.0)
+            for k in range(wp.static(terms)):
+                series = series * s * s + real(1.0) / real(2 * (wp.static(terms) - k) + 1)
+            rest = real(2.0) * s * s * (real(1.0) / (real(1.0) - s) - s * series)
+        return rest
+
+    return wp.func(excess), wp.func(log1p_rest)
+
+
+@cache
 def make_st_venant_kirchhoff(options: LawOptions) -> Any:
     """S = lambda tr(E) I + 2 mu E with E = (F^T F - I)/2, P = F S, psi = S : E / 2 (e.g. Bonet & Wood 2008).
 
@@ -149,25 +191,27 @@ def make_neo_hookean(options: LawOptions) -> Any:
     real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
     material = make_material_struct(arithmetic)
     volume_change, inverse_transpose = make_kinematics(arithmetic)
-    log1p = make_log1p(arithmetic)
+    log1p, expm1 = make_log1p(arithmetic), make_expm1(arithmetic)
+    excess, log1p_rest = make_energy_parts(arithmetic)
 
     def neo_hookean(H: matrix, p: material):
         b = H + wp.transpose(H) + H * wp.transpose(H)
-        log_J = log1p(volume_change(H))
+        growth = volume_change(H)
+        log_J = log1p(growth)
         identity = wp.identity(n=wp.static(dim), dtype=real)
-        log_t = real(0.0)
+        # mu/2 (tr(F F^T - I) - 2 ln J) in parts of second order; so is what the thickness adds, t^2 - 1 - 2 ln t
+        shape = real(0.5) * excess(H) + log1p_rest(growth)
         if wp.static(plane_stress):
             log_J_plane = log_J
+            log_t = real(0.0)
             for _ in range(wp.static(NEWTON_STEPS)):
-                t2 = wp.exp(real(2.0) * log_t)
-                residual = p.shear_modulus * (t2 - real(1.0)) + p.lame * (log_J_plane + log_t)
-                log_t -= residual / (real(2.0) * p.shear_modulus * t2 + p.lame)
+                thicker = expm1(real(2.0) * log_t)
+                residual = p.shear_modulus * thicker + p.lame * (log_J_plane + log_t)
+                log_t -= residual / (real(2.0) * p.shear_modulus * (real(1.0) + thicker) + p.lame)
             log_J = log_J_plane + log_t
+            shape += real(0.5) * log1p_rest(expm1(real(2.0) * log_t))
         P = (p.shear_modulus * b + p.lame * log_J * identity) * inverse_transpose(H)
-        stretched = wp.trace(b)
-        if wp.static(plane_stress):
-            stretched += wp.exp(real(2.0) * log_t) - real(1.0)
-        psi = real(0.5) * (p.shear_modulus * (stretched - real(2.0) * log_J) + p.lame * log_J * log_J)
+        psi = p.shear_modulus * shape + real(0.5) * p.lame * log_J * log_J
         P_33 = real(0.0)
         if wp.static(dim == 2 and not plane_stress):
             P_33 = p.lame * log_J
@@ -185,6 +229,8 @@ def make_split_neo_hookean(options: LawOptions) -> Any:
     real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
     material = make_material_struct(arithmetic)
     volume_change, inverse_transpose = make_kinematics(arithmetic)
+    log1p, expm1 = make_log1p(arithmetic), make_expm1(arithmetic)
+    excess, log1p_rest = make_energy_parts(arithmetic)
 
     def split_neo_hookean(H: matrix, p: material):
         b = H + wp.transpose(H) + H * wp.transpose(H)
@@ -192,34 +238,20 @@ def make_split_neo_hookean(options: LawOptions) -> Any:
         J = real(1.0) + growth
         identity = wp.identity(n=wp.static(dim), dtype=real)
         mean = wp.trace(b) / real(3.0)
-        shape = p.shear_modulus * wp.pow(J, real(-2.0 / 3.0))
+        isochoric = wp.pow(J, real(wp.static(-2.0 / 3.0)))
+        shape = p.shear_modulus * isochoric
         pressure = p.bulk_modulus * growth * J
         P = (shape * (b - mean * identity) + pressure * identity) * inverse_transpose(H)
-        # J^(-2/3) (3 + tr b) - 3 without the difference of large numbers
-        distortion = wp.pow(J, real(-2.0 / 3.0)) * wp.trace(b) + real(3.0) * expm1(
-            real(-2.0 / 3.0) * log1p(growth)
-        )
-        psi = real(0.5) * (p.shear_modulus * distortion + p.bulk_modulus * growth * growth)
+        # tr(F F^T) - 3 J^(2/3) in parts of second order, since 3 (J^(2/3) - 1) is 2 (J - 1) to first order
+        larger = expm1(real(wp.static(2.0 / 3.0)) * log1p(growth))
+        distortion = excess(H) + real(2.0) * log1p_rest(growth) - real(3.0) * log1p_rest(larger)
+        psi = real(0.5) * (shape * distortion + p.bulk_modulus * growth * growth)
         P_33 = real(0.0)
         if wp.static(dim == 2):
             P_33 = pressure - shape * mean
         return P, psi, P_33
 
-    log1p = make_log1p(arithmetic)
-    expm1 = make_expm1(arithmetic)
     return wp.func(split_neo_hookean)
-
-
-@cache
-def make_expm1(arithmetic: Arithmetic) -> Any:
-    """Return the device function exp(x) - 1 that keeps the digits of a small x, as 2 t / (1 - t) with t = tanh(x/2)."""
-    real = arithmetic.real
-
-    def expm1(x: real):
-        t = wp.tanh(real(0.5) * x)
-        return real(2.0) * t / (real(1.0) - t)
-
-    return wp.func(expm1)
 
 
 LAWS: Mapping[str, LawFactory] = MappingProxyType(
