@@ -52,6 +52,10 @@ class StructureOptions:
         digest = hashlib.sha256(repr(self).encode()).hexdigest()[:10]
         return f"warpsph_structure_{self.arithmetic.label}_{digest}"
 
+    def module_of(self, law: str, plane_stress: bool) -> str:
+        """Name of the module of the kernels of one constitutive law, which are compiled together."""
+        return f"{self.module}_{law}_{int(plane_stress)}"
+
 
 class StructureKernels(NamedTuple):
     """Kernels of structures, in the order of a step."""
@@ -126,7 +130,7 @@ def make_stress_kernel(options: StructureOptions, law: str, plane_stress: bool) 
     stress_of = LAWS[law](LawOptions(arithmetic, plane_stress))
     complete = make_thin_completion(arithmetic)
 
-    @wp.kernel(module=f"{options.module}_{law}_{int(plane_stress)}", enable_backward=False)
+    @wp.kernel(module=options.module_of(law, plane_stress), enable_backward=False)
     def strain_and_stress(
         offset: int,
         first: int,

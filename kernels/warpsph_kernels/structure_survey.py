@@ -72,7 +72,7 @@ def make_survey_kernel(options: StructureOptions, law: str, plane_stress: bool) 
         stiffness = p.lame + real(2.0) * p.shear_modulus
         return largest / (real(wp.static(PROBE_STRETCH)) * stiffness)
 
-    @wp.kernel(module=f"{options.module}_survey_{law}_{int(plane_stress)}", enable_backward=False)
+    @wp.kernel(module=options.module_of(law, plane_stress), enable_backward=False)
     def survey(
         offset: int,
         first: int,
@@ -130,7 +130,7 @@ def make_observation_kernel(options: StructureOptions, law: str, plane_stress: b
     complete = make_thin_completion(arithmetic)
     volume_change, _ = make_kinematics(arithmetic)
 
-    @wp.kernel(module=f"{options.module}_observe_{law}_{int(plane_stress)}", enable_backward=False)
+    @wp.kernel(module=options.module_of(law, plane_stress), enable_backward=False)
     def observe(
         offset: int,
         first: int,
