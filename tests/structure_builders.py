@@ -35,7 +35,7 @@ def block(
         "dimension": len(size),
         "spacing": spacing,
         "gravity": (0.0,) * len(size),
-        "time": {"end": 1.0, "frame_rate": 10.0},
+        "time": {"end": 1.0, "frame_rate": 10.0} | changes.pop("time", {}),
         "numerics": {"precision": precision, "structure": own},
         "structures": {"block": {"shape": shape, "material": stuff} | (structure or {})},
     }

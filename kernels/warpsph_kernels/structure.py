@@ -191,6 +191,12 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
             out[k] = wp.where(mask[k] > real(0.5), a[k], b[k])
         return out
 
+    @wp.func
+    def clamp_power(pose: prescription, X: point, mask: vector, a: point):
+        """Power per mass of a clamp [W/kg]: what it adds to the acceleration a of the other forces, times v."""
+        added = pose.rotation_acceleration * X + pose.shift_acceleration - a
+        return wp.dot(added, masked(mask, point(), pose.rotation_rate * X + pose.shift_rate))
+
     @wp.kernel(module=options.module, enable_backward=False)
     def drift(
         offset: int,
@@ -211,7 +217,8 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
     ):
         """One particle: velocity over half a step, displacement over the whole step; clamped components as prescribed.
 
-        `work` [J] gains what loads and moving clamps have done to the particle in the step.
+        `work` [J] gains what loads do to the particle in the step, and half of what moving clamps do: the other half
+        follows when the forces at the end of the step are known, so that the sum is a trapezoidal rule.
         """
         i = offset + wp.tid()
         step = clock[wp.static(STEP)]
@@ -232,13 +239,11 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
                 done += wp.float64(0.5) * factor * mass * step * wp.dot(widen(load[k, i]), half)
             if wp.static(options.moving_clamps):
                 if clamp[i] >= 0:
-                    before = prescriptions[now, clamp[i]]
                     after = prescriptions[now + 1, clamp[i]]
                     X = reference[i]
                     mask = free[i]
-                    forced = before.rotation_acceleration * X + before.shift_acceleration
-                    carried = masked(mask, point(), before.rotation_rate * X + before.shift_rate)
-                    done += step * mass * wp.dot(forced - a, carried)
+                    power = clamp_power(prescriptions[now, clamp[i]], X, mask, a)
+                    done += wp.float64(0.5) * step * mass * power
                     u = masked(mask, u, after.rotation * X + after.shift - X)
                     half = masked(mask, half, after.rotation_rate * X + after.shift_rate)
             work[i] += done
@@ -259,11 +264,15 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         displacement: wp.array(dtype=point),
         volume: wp.array(dtype=real),
         free: wp.array(dtype=vector),
+        clamp: wp.array(dtype=wp.int32),
+        prescriptions: wp.array2d(dtype=prescription),
+        reference: wp.array(dtype=point),
         load: wp.array2d(dtype=vector),
         load_factor: wp.array2d(dtype=wp.float64),
         contact_force: wp.array(dtype=vector),
         acceleration: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
+        work: wp.array(dtype=wp.float64),
         dissipated: wp.array(dtype=wp.float64),
     ):
         """One particle: rho0 dv_a/dt = sum_b w_ab [(Q_a + Q_b) X_ab + 2 penalty u_ab] + rho0 g + loads.
@@ -297,6 +306,11 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
             mass = wp.float64(p.density * volume[i])
             middle = masked(free[i], half, point())
             dissipated[i] += step * rate * mass * wp.dot(middle, middle)
+        if wp.static(options.moving_clamps):
+            if clamp[i] >= 0:
+                pose = prescriptions[int(clock[wp.static(SUB_STEP)]) + 1, clamp[i]]
+                power = clamp_power(pose, reference[i], free[i], a)
+                work[i] += wp.float64(0.5) * step * wp.float64(p.density * volume[i]) * power
         velocity[i] = masked(free[i], v, half)
 
     @wp.kernel(module=options.module, enable_backward=False)

@@ -258,11 +258,15 @@ class StructureModel:
             s.displacement,
             r.volume,
             r.free,
+            r.clamp,
+            t.prescriptions,
+            r.position,
             r.load,
             t.load_factor,
             t.contact_force,
             s.acceleration,
             s.velocity,
+            s.work,
             s.dissipated,
         )
         return drift, accelerate

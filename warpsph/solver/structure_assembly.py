@@ -109,7 +109,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         allocate_state(arithmetic, len(volume), device),
         allocate_scratch(options, len(volume), blocks, moving, device),
     )
-    _fill_state(scene, bodies, model)
+    _fill_state(scene, bodies, clamps, model)
     return StructureParts(model, bodies, clamps, tuple(spec.factor for spec, _ in loads), bonds, mass)
 
 
@@ -268,8 +268,10 @@ def _constraints(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> tupl
     return free, index
 
 
-def _fill_state(scene: Scene, bodies: Sequence[Body], model: StructureModel) -> None:
-    """Initial displacement and velocity; clamped components begin at rest, moving ones as prescribed at once."""
+def _fill_state(
+    scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], model: StructureModel
+) -> None:
+    """Initial displacement and velocity; clamped components begin at rest or as their clamp moves at time zero."""
     free = model.reference.free.numpy()
     shifts = [
         initial_field(
@@ -277,5 +279,14 @@ def _fill_state(scene: Scene, bodies: Sequence[Body], model: StructureModel) -> 
         )
         for b in bodies
     ]
-    write_array(model.state.displacement, np.concatenate(shifts) * free)
-    write_array(model.state.velocity, np.concatenate([b.sampled.velocity for b in bodies]) * free)
+    displacement = np.concatenate(shifts) * free
+    velocity = np.concatenate([b.sampled.velocity for b in bodies]) * free
+    rest = np.concatenate([b.sampled.position for b in bodies])
+    for clamp in clamps:
+        if clamp.motion is not None:
+            pose, held = clamp.motion(0.0), clamp.particles
+            points, prescribed = rest[held], 1.0 - free[held]
+            displacement[held] += prescribed * (pose.position_of(points) - points)
+            velocity[held] += prescribed * pose.velocity_of(points)
+    write_array(model.state.displacement, displacement)
+    write_array(model.state.velocity, velocity)
