@@ -22,8 +22,9 @@ class NotConverged(RuntimeError):
 class RelaxationStepper(StructureStepper):
     """Advances from equilibrium to equilibrium: pseudo-time steps at the loads of the time to land on.
 
-    The motion is damped critically in its slowest mode, whose frequency is the Rayleigh quotient of the latest
-    change of the state (Underwood 1983, adaptive dynamic relaxation). Every other mode then decays as fast.
+    The motion is damped critically in its slowest mode, whose frequency is the Rayleigh quotient of what has changed
+    lately (Underwood 1983, adaptive dynamic relaxation). Every other mode then decays as fast. The least quotient of
+    one equilibrium counts: near the end nothing but rounding changes, whose frequency is that of the shortest waves.
     """
 
     def __init__(self, scene: Scene, parts: StructureParts) -> None:
@@ -33,7 +34,7 @@ class RelaxationStepper(StructureStepper):
         self._solution = solution
         self._mass = parts.mass[:, None]
         self._free = host_view(parts.model.reference.free).astype(np.float64)
-        self._slowest = 0.0
+        self._slowest = math.inf
         self._made = 0
         self.residual, self.remaining = math.inf, math.inf
 
@@ -47,7 +48,7 @@ class RelaxationStepper(StructureStepper):
         before = self._before
         at = self.target if math.isfinite(self.target) else self.time
         dt = self.stable_step
-        self._set_clock(dt, 2.0 * self._slowest)
+        self._set_clock(dt, 2.0 * min(self._slowest, self.frequency))
         self._laws.write(at, 0.0)
         for _ in range(SUB_STEPS):
             self._model.drift()
@@ -57,7 +58,7 @@ class RelaxationStepper(StructureStepper):
         self._made += SUB_STEPS
         self._estimate_frequency(before["displacement"], before["acceleration"])
         if self._converged():
-            self.time, self._made = at, 0
+            self.time, self._made, self._slowest = at, 0, math.inf
         elif self._made >= self._solution.max_steps:
             raise NotConverged(self._complaint(at))
         return StepReport(dt, "relaxation", SUB_STEPS)
@@ -70,21 +71,21 @@ class RelaxationStepper(StructureStepper):
         moved = float(np.sum(self._mass * du * du))
         stiffness = -float(np.sum(self._mass * da * du))
         if moved > 0.0 and stiffness > 0.0:
-            self._slowest = min(math.sqrt(stiffness / moved), self.frequency)
+            self._slowest = min(self._slowest, math.sqrt(stiffness / moved))
 
     def _converged(self) -> bool:
-        """Whether the unbalanced force and the motion that it could still cause are below the tolerance."""
+        """Whether the unbalanced force and the motion that is left are below the tolerance.
+
+        A critically damped mode of frequency omega at the speed v is v / omega away from its rest, late in its decay.
+        """
         state = self._model.state
         acceleration = host_view(state.acceleration)
         unbalanced = _norm(self._mass * acceleration * self._free)
         balanced = _norm(self._mass * acceleration * (1.0 - self._free)) + self._external()
         speed, shift = _norm(host_view(state.velocity) * self._free), _norm(host_view(state.displacement))
-        if self._slowest == 0.0 or shift == 0.0:
-            self.residual = self.remaining = 0.0 if unbalanced == 0.0 else math.inf
-        else:
-            self.residual = unbalanced / max(balanced, np.finfo(float).tiny)
-            still = _norm(acceleration * self._free) / self._slowest**2 + speed / self._slowest
-            self.remaining = still / shift
+        tiny = np.finfo(float).tiny
+        self.residual = unbalanced / max(balanced, tiny)
+        self.remaining = speed / self._slowest / max(shift, tiny) if speed > 0.0 else 0.0
         return max(self.residual, self.remaining) < self._solution.tolerance
 
     def _external(self) -> float:
