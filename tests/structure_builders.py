@@ -94,6 +94,6 @@ def elastic_energy(system: StructureSystem) -> float:
 def inside_of(system: StructureSystem) -> np.ndarray:
     """Whether a particle and all its neighbours have as many neighbours as the lattice allows, shape (n,)."""
     reference = system.parts.model.reference
-    counts, rows = reference.counts.numpy(), reference.neighbours.numpy()
+    counts, rows = reference.ends.numpy()[:, 1], reference.neighbours.numpy()
     full = counts == counts.max()
     return full & np.array([full[row[:n]].all() for row, n in zip(rows, counts, strict=True)])

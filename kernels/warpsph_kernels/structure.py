@@ -10,6 +10,9 @@ The energy whose derivative the forces are is
 
     sum_a V_a [ psi(F_a) + penalty/2 sum_b |w_ab| |x_ab - F_a X_ab|^2 ].
 
+A clamped particle is rigid: it has no strain and no energy, H = Q = 0 (its L is zero). Bonds with rigid particles
+stand behind the others in a row; the penalty acts in them from the deformable side only.
+
 Since F_a is the weighted least-squares fit of x_ab = F_a X_ab with the same weights, the fit does not change the second
 part to first order, and both parts together give the force per reference volume
 
@@ -138,7 +141,7 @@ def make_stress_kernel(options: StructureOptions, law: str, plane_stress: bool) 
         structure: wp.array(dtype=wp.int32),
         neighbours: wp.array2d(dtype=wp.int32),
         bonds: wp.array2d(dtype=record),
-        counts: wp.array(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
         correction: wp.array(dtype=matrix),
         thin_normal: wp.array(dtype=record),
         displacement: wp.array(dtype=point),
@@ -152,7 +155,7 @@ def make_stress_kernel(options: StructureOptions, law: str, plane_stress: bool) 
         i = first + offset + wp.tid()
         u_a = displacement[i]
         moment = matrix()
-        for n in range(counts[i]):
+        for n in range(ends[i, 1]):
             bond = bonds[i, n]
             u_ab = narrow(u_a, displacement[neighbours[i, n]])
             moment -= wp.outer(bond[dim] * u_ab, unpack(bond))
@@ -190,6 +193,20 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         for k in range(wp.static(dim)):
             out[k] = wp.where(mask[k] > real(0.5), a[k], b[k])
         return out
+
+    @wp.func
+    def pair_force(
+        bond: record,
+        Q_a: matrix,
+        u_a: point,
+        b: int,
+        penalty: real,
+        traction: wp.array(dtype=matrix),
+        displacement: wp.array(dtype=point),
+    ):
+        """Force of the neighbour b per reference volume; it changes its sign when a and b are exchanged."""
+        u_ab = narrow(u_a, displacement[b])
+        return bond[dim] * ((Q_a + traction[b]) * unpack(bond) + penalty * u_ab)
 
     @wp.func
     def clamp_power(pose: prescription, X: point, mask: vector, a: point):
@@ -259,7 +276,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         structure: wp.array(dtype=wp.int32),
         neighbours: wp.array2d(dtype=wp.int32),
         bonds: wp.array2d(dtype=record),
-        counts: wp.array(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
         traction: wp.array(dtype=matrix),
         displacement: wp.array(dtype=point),
         volume: wp.array(dtype=real),
@@ -277,6 +294,8 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
     ):
         """One particle: rho0 dv_a/dt = sum_b w_ab [(Q_a + Q_b) X_ab + 2 penalty u_ab] + rho0 g + loads.
 
+        Beside a rigid particle there is one penalty, not two.
+
         Then the velocity over the second half of the step. `acceleration` is that without clamps, so that the
         reaction of a clamp is what is missing to the prescribed one. `dissipated` [J] gains the work of damping.
         """
@@ -284,13 +303,14 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         p = materials[structure[i]]
         u_a = displacement[i]
         Q_a = traction[i]
-        penalty = real(2.0) * p.penalty
         total = vector()
-        for n in range(counts[i]):
-            b = neighbours[i, n]
-            bond = bonds[i, n]
-            u_ab = narrow(u_a, displacement[b])
-            total += bond[dim] * ((Q_a + traction[b]) * unpack(bond) + penalty * u_ab)
+        end = ends[i, 0]
+        for n in range(end):
+            total += pair_force(
+                bonds[i, n], Q_a, u_a, neighbours[i, n], real(2.0) * p.penalty, traction, displacement
+            )
+        for n in range(end, ends[i, 1]):
+            total += pair_force(bonds[i, n], Q_a, u_a, neighbours[i, n], p.penalty, traction, displacement)
         if wp.static(options.contact):
             total += contact_force[i] / volume[i]
         a = widen(total / p.density + gravity)

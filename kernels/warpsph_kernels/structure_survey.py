@@ -139,7 +139,8 @@ def make_observation_kernel(options: StructureOptions, law: str, plane_stress: b
         volume: wp.array(dtype=real),
         neighbours: wp.array2d(dtype=wp.int32),
         bonds: wp.array2d(dtype=record),
-        counts: wp.array(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+        correction: wp.array(dtype=matrix),
         thin_normal: wp.array(dtype=record),
         displacement: wp.array(dtype=point),
         gradient: wp.array(dtype=matrix),
@@ -155,10 +156,11 @@ def make_observation_kernel(options: StructureOptions, law: str, plane_stress: b
         H = gradient[i]
         u_a = displacement[i]
         misfit = wp.float64(0.0)
-        for n in range(counts[i]):
-            bond = bonds[i, n]
-            rest = narrow(u_a, displacement[neighbours[i, n]]) - H * unpack(bond)
-            misfit -= wp.float64(bond[dim] * wp.dot(rest, rest))
+        if wp.trace(correction[i]) > real(0.0):  # a rigid particle has none
+            for n in range(ends[i, 1]):
+                bond = bonds[i, n]
+                rest = narrow(u_a, displacement[neighbours[i, n]]) - H * unpack(bond)
+                misfit -= wp.float64(bond[dim] * wp.dot(rest, rest))
         share = real(1.0)
         if wp.static(options.thin):
             H = complete(H, unpack(thin_normal[i]))

@@ -22,7 +22,14 @@ def cloud(dim: int, count: int = 60, jitter: float = 0.3) -> np.ndarray:
 
 def bonds_of(*bodies: np.ndarray, periods=None):
     total, dim = sum(map(len, bodies)), bodies[0].shape[1]
-    return make_bonds(bodies, np.full(total, SPACING**dim), RADIUS, periods or [0.0] * dim, weights)
+    return make_bonds(
+        bodies,
+        np.full(total, SPACING**dim),
+        np.zeros(total, dtype=bool),
+        RADIUS,
+        periods or [0.0] * dim,
+        weights,
+    )
 
 
 def rows_of(bonds) -> list[set[int]]:

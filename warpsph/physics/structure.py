@@ -36,7 +36,7 @@ UNITS = {
     "materials": "SI",
     "neighbours": "1",
     "bonds": "m, m^-2",
-    "counts": "1",
+    "ends": "1",
     "correction": "1",
     "thin_normal": "1",
     "free": "1",
@@ -78,7 +78,8 @@ class StructureReference:
     """What never changes in a run; n particles, rows of m neighbours.
 
     position: (n,) at rest [m]; volume: (n,) [m^dim]; structure: (n,) index into `materials`; neighbours: (n, m);
-    bonds: (n, m) records (X_ab [m], w_ab [m^-2]); counts: (n,); correction: (n,) L_a [1]; thin_normal: (n,) records
+    bonds: (n, m) records (X_ab [m], w_ab [m^-2]); ends: (n, 2) of the bonds without and with rigid
+    particles; correction: (n,) L_a [1]; thin_normal: (n,) records
     (normal of coplanar neighbours, 1 or 0 where even a plane is not seen); free: (n,) vectors, 1 where a component of
     the displacement is free and 0 where a clamp prescribes it; clamp: (n,) index of the moving clamp or -1;
     load: (loads, n) force per mass of each load before its time law [m/s^2].
@@ -90,7 +91,7 @@ class StructureReference:
     materials: wp.array
     neighbours: wp.array
     bonds: wp.array
-    counts: wp.array
+    ends: wp.array
     correction: wp.array
     thin_normal: wp.array
     free: wp.array
@@ -253,7 +254,7 @@ class StructureModel:
             r.structure,
             r.neighbours,
             r.bonds,
-            r.counts,
+            r.ends,
             t.traction,
             s.displacement,
             r.volume,
@@ -281,7 +282,7 @@ class StructureModel:
             r.structure,
             r.neighbours,
             r.bonds,
-            r.counts,
+            r.ends,
             r.correction,
             r.thin_normal,
             s.displacement,
@@ -311,7 +312,8 @@ class StructureModel:
             r.volume,
             r.neighbours,
             r.bonds,
-            r.counts,
+            r.ends,
+            r.correction,
             r.thin_normal,
             s.displacement,
             t.gradient,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from warpsph.sampling.distance import signed_distance
+from warpsph.sampling.distance import signed_distance, surface_normals
 from warpsph.sampling.lattice import Lattice
 from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.shapes import Shape
@@ -12,7 +12,6 @@ from warpsph.scene.structures import BodyLoad, ForceLoad, Load
 
 _ON_SURFACE = 1e-6
 """Reach beyond a region, in spacings, so that what lies on its surface but for rounding belongs to it."""
-_GRADIENT_STEP = 1e-3
 
 
 def inside(region: Shape, points: np.ndarray, spacing: float) -> np.ndarray:
@@ -67,20 +66,9 @@ def exposed_area(shape: Shape, position: np.ndarray, lattice: Lattice, region: S
             centre = position + 0.5 * spacing * direction
             shown = free & inside(region, centre, spacing)
             if shown.any():
-                cosine = _normals(shape, centre[shown], spacing) @ direction
+                cosine = surface_normals(shape, centre[shown], spacing) @ direction
                 area[shown] += spacing ** (dim - 1) * np.maximum(cosine, 0.0)
     return area
-
-
-def _normals(shape: Shape, points: np.ndarray, spacing: float) -> np.ndarray:
-    """Outward unit normals (n, dim) of the surface nearest to points."""
-    dim, step = points.shape[1], _GRADIENT_STEP * spacing
-    slopes = [
-        signed_distance(shape, points + step * e) - signed_distance(shape, points - step * e)
-        for e in np.eye(dim)
-    ]
-    gradient = np.stack(slopes, axis=1)
-    return gradient / np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
 def _refuse_nothing(found: np.ndarray, what: str, key: str) -> None:

@@ -57,7 +57,9 @@ class Material(SceneModel):
 
 
 class Clamp(SceneModel):
-    """Particles that are held, or moved by a prescribed law."""
+    """Particles that are held, or moved by a prescribed law.
+
+    Where all components are prescribed, the particles next to free ones stand on the surface of the region."""
 
     region: Shape
     """The particles whose centres lie in this shape at rest."""
@@ -67,6 +69,11 @@ class Clamp(SceneModel):
 
     motion: tuple[Motion, ...] = ()
     """Prescribed motions, applied in the order of the list; empty: held at rest. Default: empty."""
+
+    @property
+    def is_whole(self) -> bool:
+        """Whether all components are prescribed, so that the region is rigid."""
+        return self.axes is None
 
 
 class ForceLoad(SceneModel):
@@ -164,9 +171,9 @@ class StructureNumerics(SceneModel):
     h_over_dp: Annotated[Real, Field(ge=0.6, le=3.0)] = 0.8
     """Smoothing length over particle spacing [1]. Default: 0.8."""
 
-    hourglass: Annotated[Real, Field(ge=0.0, le=10.0)] = 0.5
+    hourglass: Annotated[Real, Field(ge=0.0, le=10.0)] = 0.4
     """Stiffness against displacements that the deformation gradient does not see, in Young's moduli [1].
-    Default: 0.5."""
+    Default: 0.4."""
 
     cfl: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.8
     """Fraction of the measured stability limit that a step may take [1]. Default: 0.8."""

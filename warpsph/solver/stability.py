@@ -46,8 +46,8 @@ def _acceleration(model: StructureModel, displacement: np.ndarray) -> np.ndarray
 
 
 def _shortest_bond(model: StructureModel) -> float:
-    bonds, counts = model.reference.bonds.numpy(), model.reference.counts.numpy()
-    present = np.arange(bonds.shape[1]) < counts[:, None]
+    bonds, ends = model.reference.bonds.numpy(), model.reference.ends.numpy()
+    present = np.arange(bonds.shape[1]) < ends[:, 1:]
     lengths = np.linalg.norm(bonds[present][:, :-1], axis=1)
     return float(lengths.min()) if lengths.size else _cell(model)
 

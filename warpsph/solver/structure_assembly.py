@@ -27,6 +27,7 @@ from warpsph.physics.structure import (
     allocate_state,
 )
 from warpsph.sampling import SampledSet
+from warpsph.sampling.clamps import onto_surface
 from warpsph.sampling.initial_state import initial_field
 from warpsph.sampling.kinematics import RigidMotion, rigid_motion
 from warpsph.sampling.loads import inside, specific_load
@@ -40,11 +41,15 @@ from warpsph.scene.types import AXES
 
 @dataclass(frozen=True)
 class Body:
-    """A structure of the scene and where its particles are: `first` .. `first + count - 1`."""
+    """A structure of the scene and where its particles are: `first` .. `first + count - 1`.
+
+    `position` (count, dim) [m] at rest is that of the sampled lattice, but for clamped particles at a surface.
+    """
 
     name: str
     sampled: SampledSet
     first: int
+    position: np.ndarray
 
     @property
     def count(self) -> int:
@@ -83,10 +88,10 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
     bodies = _bodies(scene, sets)
     volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
-    bonds = _bonds(scene, bodies, volume, launcher)
+    clamps = tuple(_clamps(scene, bodies))
+    bonds = _bonds(scene, bodies, volume, _rigid(scene, clamps, len(volume)), launcher)
     density = np.concatenate([np.full(b.count, scene.structures[b.name].material.density) for b in bodies])
     mass = density * volume
-    clamps = tuple(_clamps(scene, bodies))
     loads = list(_loads(scene, bodies))
     options = StructureOptions(
         arithmetic=arithmetic,
@@ -141,9 +146,19 @@ def _bodies(scene: Scene, sets: Sequence[SampledSet]) -> tuple[Body, ...]:
         (s for s in sets if s.kind == "structure"), key=lambda sampled: _code_of(scene, sampled.name)
     )
     for sampled in ordered:
-        bodies.append(Body(sampled.name, sampled, first))
+        bodies.append(Body(sampled.name, sampled, first, _rest_position(scene, sampled)))
         first += len(sampled.position)
     return tuple(bodies)
+
+
+def _rest_position(scene: Scene, sampled: SampledSet) -> np.ndarray:
+    """Positions (n, dim) [m] with the particles at the surface of whole clamps on that surface."""
+    position = sampled.position
+    for clamp in scene.structures[sampled.name].clamps.values():
+        if clamp.is_whole:
+            chosen = inside(clamp.region, sampled.position, scene.spacing)
+            position = onto_surface(clamp.region, position, chosen, scene.spacing)
+    return position
 
 
 def _code_of(scene: Scene, name: str) -> tuple[str, bool]:
@@ -159,7 +174,9 @@ def _law_ranges(scene: Scene, bodies: Sequence[Body]) -> list[LawRange]:
     return ranges
 
 
-def _bonds(scene: Scene, bodies: Sequence[Body], volume: np.ndarray, launcher: Launcher) -> Bonds:
+def _bonds(
+    scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray, launcher: Launcher
+) -> Bonds:
     dim, smoothing = scene.dimension, scene.numerics.kernel
     h = scene.numerics.structure.h_over_dp * scene.spacing
     norm = SMOOTHING_KERNELS[smoothing].norm(dim, h) / h**2
@@ -174,8 +191,8 @@ def _bonds(scene: Scene, bodies: Sequence[Body], volume: np.ndarray, launcher: L
     periods = np.zeros(dim)
     for axis, (low, high) in period_of(scene).items():
         periods[axis] = high - low
-    positions = [body.sampled.position for body in bodies]
-    return make_bonds(positions, volume, bond_radius(scene), periods.tolist(), weights)
+    positions = [body.position for body in bodies]
+    return make_bonds(positions, volume, rigid, bond_radius(scene), periods.tolist(), weights)
 
 
 def _clamps(scene: Scene, bodies: Sequence[Body]) -> Iterator[HeldRegion]:
@@ -226,13 +243,13 @@ def _reference(
         return wp.array(np.ascontiguousarray(values), dtype=dtype, device=device)
 
     return StructureReference(
-        position=array(np.concatenate([body.sampled.position for body in bodies]), arithmetic.point),
+        position=array(np.concatenate([body.position for body in bodies]), arithmetic.point),
         volume=array(volume, arithmetic.real),
         structure=array(owner, wp.int32),
         materials=wp.array(materials, dtype=make_material_struct(arithmetic), device=device),
         neighbours=row_array(bonds.neighbour, wp.int32, device),
         bonds=row_array(bond_records, arithmetic.record, device),
-        counts=array(bonds.count, wp.int32),
+        ends=wp.array(np.ascontiguousarray(bonds.ends), dtype=wp.int32, ndim=2, device=device),
         correction=array(bonds.correction, make_matrix(arithmetic)),
         thin_normal=array(np.column_stack([bonds.normal, bonds.seen]), arithmetic.record),
         free=array(free, arithmetic.vector),
@@ -250,6 +267,15 @@ def _material(scene: Scene, arithmetic: Arithmetic, name: str) -> Any:
     numbers.penalty = scene.numerics.structure.hourglass * material.youngs_modulus
     numbers.damping = structure.damping
     return numbers
+
+
+def _rigid(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> np.ndarray:
+    """Whether a clamp prescribes all components of each particle's displacement, shape (n,)."""
+    rigid = np.zeros(count, dtype=bool)
+    for clamp in clamps:
+        if scene.structures[clamp.structure].clamps[clamp.name].is_whole:
+            rigid[clamp.particles] = True
+    return rigid
 
 
 def _constraints(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> tuple[np.ndarray, np.ndarray]:
@@ -281,7 +307,7 @@ def _fill_state(
     ]
     displacement = np.concatenate(shifts) * free
     velocity = np.concatenate([b.sampled.velocity for b in bodies]) * free
-    rest = np.concatenate([b.sampled.position for b in bodies])
+    rest = np.concatenate([b.position for b in bodies])
     for clamp in clamps:
         if clamp.motion is not None:
             pose, held = clamp.motion(0.0), clamp.particles
