@@ -21,7 +21,15 @@ from warpsph.scene.probes import (
     WallPressureProbe,
     WaterLevelProbe,
 )
-from warpsph.scene.references import FieldReference, InlineTable, LimitReference, SeriesReference
+from warpsph.scene.references import (
+    FeatureReference,
+    FieldReference,
+    InlineProfile,
+    InlineTable,
+    LimitReference,
+    ProfileReference,
+    SeriesReference,
+)
 from warpsph.scene.types import AXES
 
 if TYPE_CHECKING:
@@ -73,6 +81,11 @@ def reference_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
                 yield from _limit_problems(reference, key)
             case FieldReference():
                 yield from _field_problems(reference, scene, names, key)
+            case ProfileReference():
+                yield from _profile_problems(reference, scene, key)
+            case FeatureReference():
+                yield from _column_problems(reference.column, scene, names, key)
+                yield from _feature_problems(reference, key)
 
 
 def _column_problems(column: str, scene: Scene, names: DeclaredNames, key: str) -> Iterator[Problem]:
@@ -108,9 +121,48 @@ def _limit_problems(reference: LimitReference, key: str) -> Iterator[Problem]:
         yield Problem.at(key, "neither low nor high is given, so everything passes", "low, high or both")
     if low is not None and high is not None and low > high:
         yield Problem.at(f"{key}.low", f"low is above high {high:g}", f"at most {high:g}", low)
-    if reference.window is not None and reference.window[0] >= reference.window[1]:
+    yield from _window_problems(reference.window, key)
+
+
+def _window_problems(window: tuple[float, float] | None, key: str) -> Iterator[Problem]:
+    if window is not None and window[0] >= window[1]:
         message = "the window ends before it begins"
-        yield Problem.at(f"{key}.window", message, "[first, last] with first < last", list(reference.window))
+        yield Problem.at(f"{key}.window", message, "[first, last] with first < last", list(window))
+
+
+def _feature_problems(reference: FeatureReference, key: str) -> Iterator[Problem]:
+    yield from _window_problems(reference.window, key)
+    needs_threshold = reference.feature in ("arrival", "first_peak", "first_peak_time")
+    if needs_threshold and reference.threshold is None:
+        yield Problem.at(
+            f"{key}.threshold", f"{reference.feature} needs it", "a number, in the column's unit"
+        )
+    if not needs_threshold and reference.threshold is not None:
+        message = f"{reference.feature} has no threshold"
+        yield Problem.at(f"{key}.threshold", message, "null", reference.threshold)
+    if reference.bound is not None and reference.value is None:
+        yield Problem.at(f"{key}.bound", "there is no value that it bounds", "a value, or convergence")
+    if reference.convergence is not None and reference.value is not None:
+        message = "the value itself is what the figure is compared with"
+        yield Problem.at(f"{key}.convergence", message, "null, or no value", reference.convergence)
+    if reference.value == 0.0 and reference.relative_to == "value":
+        message = "an error relative to the value 0 has no meaning"
+        yield Problem.at(f"{key}.value", message, "relative_to: a number greater than 0", reference.value)
+
+
+def _profile_problems(reference: ProfileReference, scene: Scene, key: str) -> Iterator[Problem]:
+    for name, value in (("field", reference.field), ("axis", reference.axis)):
+        if value[-1] == "z" and scene.dimension == 2:
+            yield no_such_axis(f"{key}.{name}", value, scene.dimension)
+    table = reference.table
+    if not isinstance(table, InlineProfile):
+        return
+    if len(table.position) != len(table.value):
+        message = f"{len(table.value)} values for {len(table.position)} positions"
+        yield Problem.at(f"{key}.table.value", message, f"{len(table.position)} values")
+    if reference.relative_to == "value" and 0.0 in table.value:
+        message = "an error relative to the value 0 has no meaning"
+        yield Problem.at(f"{key}.table.value", message, "relative_to: peak, or a number greater than 0")
 
 
 def _field_problems(
