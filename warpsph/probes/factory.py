@@ -8,6 +8,7 @@ from warpsph.probes.force import ForceProbe
 from warpsph.probes.front import FrontProbe
 from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
+from warpsph.probes.reach import ReachProbe
 from warpsph.probes.volume import VolumeProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
 from warpsph.probes.water_level import WaterLevelProbe
@@ -16,6 +17,7 @@ from warpsph.scene.schema import Scene
 
 PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "front": FrontProbe,
+    "reach": ReachProbe,
     "water_level": WaterLevelProbe,
     "wall_pressure": WallPressureProbe,
     "point": PointProbe,

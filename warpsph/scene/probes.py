@@ -9,6 +9,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from warpsph.scene.shapes import Bounds
 from warpsph.scene.types import AXES, Axis, Name, PositiveReal, Real, SceneModel, Vector
 
 PointField = Literal["pressure", "velocity", "density"]
@@ -41,6 +42,20 @@ class FrontProbe(_Probe):
         return ("position[m]",)
 
 
+class ReachProbe(_Probe):
+    """Largest distance of fluid from a point, half the diagonal of a particle's cell included."""
+
+    type: Literal["reach"] = "reach"
+    center: Vector
+    """The point [m]."""
+
+    fluid: Name | None = None
+    """One fluid only; null: all fluids. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("radius[m]",)
+
+
 class WaterLevelProbe(_Probe):
     """Height of the free surface at a vertical gauge."""
 
@@ -56,17 +71,21 @@ class WaterLevelProbe(_Probe):
 
 
 class WallPressureProbe(_Probe):
-    """Mean pressure on the wall particles near a point."""
+    """Mean pressure on the surface of a wall near a point.
+
+    It is taken from the first layer of wall particles, and moved to the surface half a spacing before it by the
+    hydrostatic gradient.
+    """
 
     type: Literal["wall_pressure"] = "wall_pressure"
     boundary: Name
     """The boundary that carries the gauge."""
 
     at: Vector
-    """Centre of the gauge [m]."""
+    """Centre of the gauge [m], on the surface."""
 
     radius: PositiveReal
-    """Wall particles within this distance count [m]."""
+    """Wall particles of the first layer within this distance count [m]."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return ("pressure[Pa]",)
@@ -120,15 +139,25 @@ class EnergyProbe(_Probe):
 
 
 class VolumeProbe(_Probe):
-    """Volume (sum of m/rho) and number of particles of all fluids, and how many have left through the kill box."""
+    """Volume (sum of m/rho) and number of particles of all fluids, and how many are gone since the start: through the
+    kill box or, where a region is given, out of it."""
 
     type: Literal["volume"] = "volume"
+    region: Bounds | None = None
+    """Only particles in this box count; null: all. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return (f"volume[m{dimension}]", "particles[1]", "removed[1]")
 
 
 Probe = Annotated[
-    FrontProbe | WaterLevelProbe | WallPressureProbe | PointProbe | ForceProbe | EnergyProbe | VolumeProbe,
+    FrontProbe
+    | ReachProbe
+    | WaterLevelProbe
+    | WallPressureProbe
+    | PointProbe
+    | ForceProbe
+    | EnergyProbe
+    | VolumeProbe,
     Field(discriminator="type"),
 ]

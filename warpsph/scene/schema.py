@@ -16,7 +16,7 @@ from warpsph.scene.checks import scene_problems
 from warpsph.scene.document import Document, placed
 from warpsph.scene.dump import to_yaml
 from warpsph.scene.errors import SceneError
-from warpsph.scene.expressions import VectorField
+from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
@@ -93,7 +93,17 @@ class UniformPressure(SceneModel):
     """Pressure [Pa]."""
 
 
-InitialPressure = Annotated[HydrostaticPressure | UniformPressure, Field(discriminator="type")]
+class ExpressionPressure(SceneModel):
+    """Initial pressure as a formula."""
+
+    type: Literal["expression"] = "expression"
+    value: Expression
+    """Pressure [Pa] as an expression in x, y, z [m]."""
+
+
+InitialPressure = Annotated[
+    HydrostaticPressure | UniformPressure | ExpressionPressure, Field(discriminator="type")
+]
 
 
 class Fluid(SceneModel):

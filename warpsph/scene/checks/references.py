@@ -18,6 +18,7 @@ from warpsph.scene.probes import (
     FrontProbe,
     PointProbe,
     Probe,
+    ReachProbe,
     WallPressureProbe,
     WaterLevelProbe,
 )
@@ -52,7 +53,7 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
 
 def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
     match probe:
-        case FrontProbe(fluid=str(fluid)) if fluid not in names.fluids:
+        case FrontProbe(fluid=str(fluid)) | ReachProbe(fluid=str(fluid)) if fluid not in names.fluids:
             yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
         case WallPressureProbe() | ForceProbe() if probe.boundary not in names.boundaries:
             yield unknown_name(f"{key}.boundary", "boundary", probe.boundary, names.boundaries)
