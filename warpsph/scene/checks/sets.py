@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from warpsph.scene.checks.common import DeclaredNames, prefixed, vector_field_problems
+from warpsph.scene.checks.common import DeclaredNames, expression_problems, prefixed, vector_field_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
