@@ -15,6 +15,7 @@ FIELD_UNITS: dict[str, str] = {
     "mass": "kg",
     "volume": "m3",
     "force": "N",
+    "vorticity": "1/s",
     "displacement": "m",
     "reaction": "N",
     "cauchy_stress": "Pa",

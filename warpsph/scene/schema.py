@@ -42,6 +42,8 @@ OutputField = Literal[
     "density",
     "pressure",
     "mass",
+    "vorticity",
+    "free_surface",
     "displacement",
     "cauchy_stress",
     "von_mises",
@@ -165,7 +167,8 @@ class Output(SceneModel):
     """Write frames.h5. Default: false."""
 
     fields: tuple[OutputField, ...] = ("velocity", "density", "pressure")
-    """Fields in the frames beside position and id: velocity, mass; of fluids density, pressure; of structures
+    """Fields in the frames beside position and id: velocity, mass; of fluids density, pressure, vorticity [1/s] and
+    free_surface (1 there, else 0); of structures
     displacement, cauchy_stress, von_mises, green_lagrange_strain, volume_ratio (J).
     Default: velocity, density, pressure."""
 
