@@ -3,12 +3,16 @@
 from collections.abc import Callable
 from typing import Any
 
+from warpsph.probes.displacement import DisplacementProbe
 from warpsph.probes.energy import EnergyProbe
 from warpsph.probes.force import ForceProbe
 from warpsph.probes.front import FrontProbe
+from warpsph.probes.momentum import MomentumProbe
 from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
 from warpsph.probes.reach import ReachProbe
+from warpsph.probes.reaction import ReactionProbe
+from warpsph.probes.structure_energy import StructureEnergyProbe
 from warpsph.probes.volume import VolumeProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
 from warpsph.probes.water_level import WaterLevelProbe
@@ -24,6 +28,10 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "force": ForceProbe,
     "energy": EnergyProbe,
     "volume": VolumeProbe,
+    "displacement": DisplacementProbe,
+    "reaction": ReactionProbe,
+    "structure_energy": StructureEnergyProbe,
+    "momentum": MomentumProbe,
 }
 
 

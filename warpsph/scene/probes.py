@@ -12,6 +12,17 @@ from pydantic import Field
 from warpsph.scene.shapes import Bounds
 from warpsph.scene.types import AXES, Axis, Name, PositiveReal, Real, SceneModel, Vector
 
+STRUCTURE_ENERGIES = (
+    "kinetic",
+    "strain",
+    "hourglass",
+    "contact",
+    "dissipated",
+    "work",
+    "potential",
+    "total",
+)
+"""Columns of the energies of structures."""
 PointField = Literal["pressure", "velocity", "density"]
 
 
@@ -122,10 +133,7 @@ class ForceProbe(_Probe):
     the start. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
-        if dimension == 2:
-            return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
-        forces = tuple(f"force_{axis}[N]" for axis in AXES)
-        return forces + tuple(f"torque_{axis}[N m]" for axis in AXES)
+        return _force_columns(dimension)
 
 
 class EnergyProbe(_Probe):
@@ -150,6 +158,75 @@ class VolumeProbe(_Probe):
         return (f"volume[m{dimension}]", "particles[1]", "removed[1]")
 
 
+class DisplacementProbe(_Probe):
+    """Displacement and velocity of a material point of a structure, by first-order consistent interpolation."""
+
+    type: Literal["displacement"] = "displacement"
+    structure: Name
+    """The structure."""
+
+    at: Vector
+    """Where the point is at rest [m]; in the structure or on its surface."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        shifts = tuple(f"displacement_{axis}[m]" for axis in AXES[:dimension])
+        return shifts + tuple(f"velocity_{axis}[m/s]" for axis in AXES[:dimension])
+
+
+class ReactionProbe(_Probe):
+    """Force and torque of a clamp on its structure."""
+
+    type: Literal["reaction"] = "reaction"
+    structure: Name
+    """The structure."""
+
+    clamp: Name
+    """Name of its clamp."""
+
+    about: Vector | None = None
+    """Point about which the torque is taken [m]; null: the centre of the clamped particles at rest. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return _force_columns(dimension)
+
+
+class StructureEnergyProbe(_Probe):
+    """Energies of structures.
+
+    `work` has been done by loads and moving clamps, `dissipated` has been lost to damping and friction; `potential`
+    is that of gravity, zero at rest. `total` = kinetic + strain + hourglass + contact + potential + dissipated - work:
+    it keeps its first value where energy is conserved.
+    """
+
+    type: Literal["structure_energy"] = "structure_energy"
+    structure: Name | None = None
+    """One structure only; null: all. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "J/m" if dimension == 2 else "J"
+        return tuple(f"{energy}[{unit}]" for energy in STRUCTURE_ENERGIES)
+
+
+class MomentumProbe(_Probe):
+    """Momentum and angular momentum of structures about the origin."""
+
+    type: Literal["momentum"] = "momentum"
+    structure: Name | None = None
+    """One structure only; null: all. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        if dimension == 2:
+            return ("momentum_x[kg/s]", "momentum_y[kg/s]", "angular_momentum_z[kg m/s]")
+        linear = tuple(f"momentum_{axis}[kg m/s]" for axis in AXES)
+        return linear + tuple(f"angular_momentum_{axis}[kg m2/s]" for axis in AXES)
+
+
+def _force_columns(dimension: int) -> tuple[str, ...]:
+    if dimension == 2:
+        return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
+    return tuple(f"force_{axis}[N]" for axis in AXES) + tuple(f"torque_{axis}[N m]" for axis in AXES)
+
+
 Probe = Annotated[
     FrontProbe
     | ReachProbe
@@ -158,6 +235,10 @@ Probe = Annotated[
     | PointProbe
     | ForceProbe
     | EnergyProbe
-    | VolumeProbe,
+    | VolumeProbe
+    | DisplacementProbe
+    | ReactionProbe
+    | StructureEnergyProbe
+    | MomentumProbe,
     Field(discriminator="type"),
 ]

@@ -14,11 +14,17 @@ from warpsph.scene.checks.common import (
 )
 from warpsph.scene.errors import Problem
 from warpsph.scene.probes import (
+    DisplacementProbe,
+    EnergyProbe,
     ForceProbe,
     FrontProbe,
+    MomentumProbe,
     PointProbe,
     Probe,
     ReachProbe,
+    ReactionProbe,
+    StructureEnergyProbe,
+    VolumeProbe,
     WallPressureProbe,
     WaterLevelProbe,
 )
@@ -41,7 +47,12 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
     """Probes of sets or axes that the scene does not have."""
     for name, probe in scene.probes.items():
         key = f"probes.{name}"
+        yield from _kind_problems(probe, names, key)
         yield from _set_problems(probe, names, key)
+        if isinstance(probe, ReactionProbe) and probe.structure in scene.structures:
+            clamps = scene.structures[probe.structure].clamps
+            if probe.clamp not in clamps:
+                yield unknown_name(f"{key}.clamp", "clamp", probe.clamp, clamps)
         axis = getattr(probe, "axis", None)
         if axis == "z" and scene.dimension == 2:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
@@ -51,10 +62,31 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield from repeated_problems(f"{key}.fields", probe.fields)
 
 
+def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    """Probes that look at everything of a kind of which the scene has nothing."""
+    match probe:
+        case FrontProbe() | ReachProbe() | WaterLevelProbe() | PointProbe() | EnergyProbe() | VolumeProbe():
+            kind, there = "fluid", names.fluids
+        case StructureEnergyProbe() | MomentumProbe():
+            kind, there = "structure", names.structures
+        case _:
+            return
+    if not there:
+        message = f"it looks at {kind}s, of which the scene has none"
+        yield Problem.at(f"{key}.type", message, f"a scene with a {kind}, or another probe", probe.type)
+
+
 def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
     match probe:
         case FrontProbe(fluid=str(fluid)) | ReachProbe(fluid=str(fluid)) if fluid not in names.fluids:
             yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
+        case (
+            DisplacementProbe(structure=str(structure))
+            | ReactionProbe(structure=str(structure))
+            | StructureEnergyProbe(structure=str(structure))
+            | MomentumProbe(structure=str(structure))
+        ) if structure not in names.structures:
+            yield unknown_name(f"{key}.structure", "structure", structure, names.structures)
         case WallPressureProbe() | ForceProbe() if probe.boundary not in names.boundaries:
             yield unknown_name(f"{key}.boundary", "boundary", probe.boundary, names.boundaries)
 
