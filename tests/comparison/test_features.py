@@ -88,3 +88,21 @@ def test_without_a_value_the_figure_is_reported() -> None:
 def test_features_that_mean_nothing_are_refused(reference: dict[str, Any], key: str) -> None:
     with pytest.raises(SceneError, match=rf"references\.figure\.{key}"):
         row_of(TIMES, **reference)
+
+
+def test_times_of_extremes_lie_between_the_samples() -> None:
+    """A parabola through samples of a parabola has its vertex; the samples are 0.005 s apart."""
+    vertex = 0.7321
+    hill = 4.0 - 3.0 * (TIMES - vertex) ** 2
+    assert row_of(hill, feature="maximum_time", value=vertex, bound=1e-9).holds is True
+    assert row_of(-hill, feature="minimum_time", value=vertex, bound=1e-9).holds is True
+    assert row_of(-hill, feature="minimum_time", window=[0.0, 0.5]).value == 0.5
+
+
+def test_a_bound_may_fall_with_the_spacing() -> None:
+    """The tank has a spacing of 0.1 m: the bound of the finest spacing that is no finer counts."""
+    values = np.full(TIMES.size, 1.02)
+    levels = [[0.2, 0.05], [0.1, 0.03], [0.05, 0.01]]
+    assert row_of(values, feature="maximum", value=1.0, bound=levels).bound == 0.03
+    assert row_of(values, feature="maximum", value=1.0, bound=[[0.15, 0.04], [0.05, 0.01]]).bound == 0.04
+    assert row_of(values, feature="maximum", value=1.0, bound=[[0.05, 0.01]]).holds is None

@@ -9,7 +9,7 @@ import numpy as np
 
 from warpsph.comparison.limits import unit_of, window_of
 from warpsph.comparison.row import Comparison, History, relative_errors
-from warpsph.scene.references import FeatureReference
+from warpsph.scene.references import FeatureReference, bound_at
 from warpsph.scene.schema import Scene
 
 PASSAGE_MARGIN = 0.25
@@ -29,7 +29,7 @@ def compare_feature(name: str, reference: FeatureReference, scene: Scene, histor
         value=figure,
         reference=expected,
         error=abs(float(error)),
-        bound=reference.bound,
+        bound=bound_at(reference.bound, scene.spacing),
         uncertainty=reference.uncertainty,
         source=reference.source,
         note=_why_missing(reference, figure, reached),
@@ -49,7 +49,7 @@ def feature_unit(reference: FeatureReference) -> str:
     """Unit of the figure, from that of the column."""
     unit = unit_of(reference.column)
     units = {"integral": f"{unit} s", "decay_rate": "1/s"}
-    times = dict.fromkeys(("arrival", "first_peak_time", "period"), "s")
+    times = dict.fromkeys(("arrival", "first_peak_time", "period", "maximum_time", "minimum_time"), "s")
     return (units | times).get(reference.feature, unit)
 
 
@@ -74,6 +74,19 @@ def first_peak(time: np.ndarray, column: np.ndarray, threshold: float) -> tuple[
     end = fallen[0] if len(fallen) else len(after)
     peak = int(np.argmax(after[:end]))
     return float(time[reached[0] + peak]), float(after[peak])
+
+
+def maximum_time(time: np.ndarray, column: np.ndarray) -> float:
+    """Time of the largest value: the vertex of the parabola through it and the samples beside it.
+
+    At an end of the window, or where the three samples are level, the time of the sample itself.
+    """
+    top = int(np.argmax(column))
+    if not 0 < top < len(column) - 1:
+        return float(time[top])
+    near = slice(top - 1, top + 2)
+    curvature, slope, _ = np.polyfit(time[near] - time[top], column[near], 2)
+    return float(time[top] - 0.5 * slope / curvature) if curvature < 0.0 else float(time[top])
 
 
 def period(time: np.ndarray, column: np.ndarray) -> float:
@@ -115,6 +128,8 @@ def _why_missing(reference: FeatureReference, figure: float, reached: bool) -> s
 FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
     "maximum": lambda _, column: float(column.max()),
     "minimum": lambda _, column: float(column.min()),
+    "maximum_time": maximum_time,
+    "minimum_time": lambda time, column: maximum_time(time, -column),
     "mean": lambda time, column: float(np.trapezoid(column, time) / (time[-1] - time[0])),
     "integral": lambda time, column: float(np.trapezoid(column, time)),
     "period": period,

@@ -12,7 +12,7 @@ from warpsph.comparison.profiles import INTERPOLATED_FROM, profile_values
 from warpsph.comparison.row import Comparison, Sample, relative_errors, representative
 from warpsph.frame import Frame, SetFrame
 from warpsph.scene.expressions import evaluate
-from warpsph.scene.references import FieldReference, ProfileReference
+from warpsph.scene.references import FieldReference, ProfileReference, bound_at
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
 
@@ -70,7 +70,7 @@ def compare_field(
         value=value,
         reference=target,
         error=error,
-        bound=reference.bound,
+        bound=bound_at(reference.bound, scene.spacing),
         uncertainty=reference.uncertainty,
         source=reference.source,
         samples=nearest,

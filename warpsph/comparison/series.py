@@ -15,7 +15,7 @@ from warpsph.comparison.row import (
     representative,
 )
 from warpsph.output.probes_csv import TIME_COLUMN
-from warpsph.scene.references import InlineTable, SeriesReference
+from warpsph.scene.references import InlineTable, SeriesReference, bound_at
 from warpsph.scene.schema import Scene
 from warpsph.scene.tables import read_columns
 
@@ -70,7 +70,7 @@ def compare_series(name: str, reference: SeriesReference, scene: Scene, history:
         value=value,
         reference=target,
         error=error,
-        bound=reference.bound,
+        bound=bound_at(reference.bound, scene.spacing),
         uncertainty=reference.uncertainty,
         source=reference.source,
         lag=lag,

@@ -24,6 +24,8 @@ ReferenceField = Literal["pressure", "density", "velocity_x", "velocity_y", "vel
 Feature = Literal[
     "maximum",
     "minimum",
+    "maximum_time",
+    "minimum_time",
     "mean",
     "integral",
     "arrival",
@@ -32,7 +34,18 @@ Feature = Literal[
     "period",
     "decay_rate",
 ]
+Bound = PositiveReal | Annotated[tuple[tuple[PositiveReal, PositiveReal], ...], Field(min_length=1)]
 Times = Annotated[tuple[NonNegativeReal, ...], Field(min_length=1)]
+
+_SAME_SPACING = 1e-6
+
+
+def bound_at(bound: Bound | None, spacing: float) -> float | None:
+    """The bound of a run of that spacing [m]; None where it is coarser than all that have one."""
+    if not isinstance(bound, tuple):
+        return bound
+    coarser = [pair for pair in bound if pair[0] >= spacing * (1.0 - _SAME_SPACING)]
+    return min(coarser)[1] if coarser else None
 
 
 class InlineTable(SceneModel):
@@ -123,8 +136,9 @@ class _Compared(_Reference):
     particles or points at that time, or over the times of a series (peak), or a number in its unit.
     Default: value."""
 
-    bound: PositiveReal | None = None
-    """Largest relative error that passes [1]; null: reported without verdict. Default: null."""
+    bound: Bound | None = None
+    """Largest relative error that passes [1]; a list of [particle spacing [m], bound] where it falls with the
+    resolution, each bound for its spacing and finer ones; null: reported without verdict. Default: null."""
 
     uncertainty: NonNegativeReal = 0.0
     """Of the reference itself, relative like the error [1]. Default: 0."""
@@ -192,7 +206,8 @@ class FeatureReference(_Reference):
     """The probe column, such as energy.kinetic[J]."""
 
     feature: Feature
-    """maximum, minimum or mean [unit of the column]; integral over time [unit s]; arrival: first time at which the
+    """maximum, minimum or mean [unit of the column]; maximum_time and minimum_time, when they are [s], between samples
+    by a parabola; integral over time [unit s]; arrival: first time at which the
     column reaches `threshold` [s]; first_peak: largest value from the arrival until the column has fallen below half of
     it, and first_peak_time, when that is [s]; period: mean time between upward passages of the mean value [s];
     decay_rate: k of the exponential exp(-k t) that fits best [1/s]."""
@@ -209,8 +224,9 @@ class FeatureReference(_Reference):
     relative_to: Literal["value"] | PositiveReal = "value"
     """The error is divided by this: the reference value itself, or a number in its unit. Default: value."""
 
-    bound: PositiveReal | None = None
-    """Largest relative error that passes [1]; null: reported without verdict. Default: null."""
+    bound: Bound | None = None
+    """Largest relative error that passes [1]; a list of [particle spacing [m], bound] where it falls with the
+    resolution, each bound for its spacing and finer ones; null: reported without verdict. Default: null."""
 
     uncertainty: NonNegativeReal = 0.0
     """Of the reference itself, relative like the error [1]. Default: 0."""
