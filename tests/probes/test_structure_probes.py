@@ -5,6 +5,7 @@ import re
 import numpy as np
 import pytest
 from particles import disordered, frame_of, lattice, probe_of
+from scipy.spatial.transform import Rotation
 
 from warpsph.frame import SetFrame
 from warpsph.scene.errors import SceneError
@@ -90,6 +91,19 @@ def test_a_single_row_of_particles_is_exact_for_fields_along_it():
     assert probe.evaluate(frame_of(body(rest, u)))[:2] == pytest.approx((0.3, 2.0), abs=1e-12)
 
 
+@pytest.mark.parametrize("axis", ["x", "y", "z"])
+def test_the_angle_of_a_rigid_rotation_is_its_own(axis):
+    """A right-handed turn by 2.5 rad about any axis, seen by a point on an edge."""
+    rest = lattice([0.0] * 3, [1.0, 0.4, 0.4])
+    about = np.array([0.3, 0.1, -0.2])
+    turn = Rotation.from_rotvec(2.5 * np.eye(3)["xyz".index(axis)])
+    spec = {"type": "rotation", "structure": "beam", "at": [1.0, 0.4, 0.2], "about": about.tolist()}
+    probe = probe_of(beam_scene(spec | {"axis": axis}, 3))
+    probe.start(frame_of(body(rest)))
+    moved = body(rest, turn.apply(rest - about) - (rest - about))
+    assert probe.evaluate(frame_of(moved))[0] == pytest.approx(2.5, abs=1e-12)
+
+
 def test_a_point_outside_of_the_structure_is_refused():
     probe = displacement_probe((1.2, 0.2))
     with pytest.raises(SceneError, match=r"probes\.probe\.at"):
@@ -123,6 +137,8 @@ def test_energies_are_sums_and_the_total_balances_them():
     mass = DENSITY * 0.4
     assert values["probe.kinetic[J/m]"] == pytest.approx(0.5 * mass * 25.0)
     assert values["probe.potential[J/m]"] == pytest.approx(mass * 2.0 * -0.3)
+    probe.start(frame)
+    assert probe.evaluate(frame)[-1] == 0.0
     total = 0.5 * mass * 25.0 - mass * 0.6 + 5.0 + 0.5 + 0.25 + 2.0 - 7.0
     assert values["probe.total[J/m]"] == pytest.approx(total)
 
@@ -146,6 +162,10 @@ def test_momentum_of_a_rigid_motion(dimension):
     ("probe", "key"),
     [
         ({"type": "volume"}, "probes.probe.type"),
+        (
+            {"type": "rotation", "structure": "beam", "at": [1.0, 0.2], "about": [1.0, 0.2]},
+            "probes.probe.at",
+        ),
         ({"type": "displacement", "structure": "bean", "at": [0.0, 0.0]}, "probes.probe.structure"),
         ({"type": "reaction", "structure": "beam", "clamp": "rot"}, "probes.probe.clamp"),
     ],

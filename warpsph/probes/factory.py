@@ -12,6 +12,7 @@ from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
 from warpsph.probes.reach import ReachProbe
 from warpsph.probes.reaction import ReactionProbe
+from warpsph.probes.rotation import RotationProbe
 from warpsph.probes.structure_energy import StructureEnergyProbe
 from warpsph.probes.volume import VolumeProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
@@ -29,6 +30,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "energy": EnergyProbe,
     "volume": VolumeProbe,
     "displacement": DisplacementProbe,
+    "rotation": RotationProbe,
     "reaction": ReactionProbe,
     "structure_energy": StructureEnergyProbe,
     "momentum": MomentumProbe,

@@ -21,6 +21,7 @@ STRUCTURE_ENERGIES = (
     "work",
     "potential",
     "total",
+    "drift",
 )
 """Columns of the energies of structures."""
 PointField = Literal["pressure", "velocity", "density"]
@@ -173,6 +174,26 @@ class DisplacementProbe(_Probe):
         return shifts + tuple(f"velocity_{axis}[m/s]" for axis in AXES[:dimension])
 
 
+class RotationProbe(_Probe):
+    """Angle by which a material point of a structure has turned about an axis, right-handed, from -pi to pi."""
+
+    type: Literal["rotation"] = "rotation"
+    structure: Name
+    """The structure."""
+
+    at: Vector
+    """Where the point is at rest [m]; in the structure or on its surface, and not on the axis."""
+
+    about: Vector
+    """A point of the axis [m]."""
+
+    axis: Axis = "z"
+    """Direction of the axis; z in two dimensions. Default: z."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("angle[rad]",)
+
+
 class ReactionProbe(_Probe):
     """Force and torque of a clamp on its structure."""
 
@@ -195,7 +216,7 @@ class StructureEnergyProbe(_Probe):
 
     `work` has been done by loads and moving clamps, `dissipated` has been lost to damping and friction; `potential`
     is that of gravity, zero at rest. `total` = kinetic + strain + hourglass + contact + potential + dissipated - work:
-    it keeps its first value where energy is conserved.
+    it keeps its value where energy is conserved, and `drift` is how far it has come from that at the start.
     """
 
     type: Literal["structure_energy"] = "structure_energy"
@@ -237,6 +258,7 @@ Probe = Annotated[
     | EnergyProbe
     | VolumeProbe
     | DisplacementProbe
+    | RotationProbe
     | ReactionProbe
     | StructureEnergyProbe
     | MomentumProbe,

@@ -157,6 +157,10 @@ class SeriesReference(_Compared):
     at: Times | None = None
     """Times of comparison [s]; null: those of the table. Default: null."""
 
+    unroll: PositiveReal | None = None
+    """The column begins anew at this period, as an angle does at 2 pi; it is continued from its first value on, in the
+    unit of the column; null: it does not. Default: null."""
+
     lag: Literal["none", "fit"] = "none"
     """fit: shift the reference by the start-up lag that fits best, and state it. Default: none."""
 

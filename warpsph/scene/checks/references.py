@@ -23,6 +23,7 @@ from warpsph.scene.probes import (
     Probe,
     ReachProbe,
     ReactionProbe,
+    RotationProbe,
     StructureEnergyProbe,
     VolumeProbe,
     WallPressureProbe,
@@ -54,12 +55,22 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             if probe.clamp not in clamps:
                 yield unknown_name(f"{key}.clamp", "clamp", probe.clamp, clamps)
         axis = getattr(probe, "axis", None)
-        if axis == "z" and scene.dimension == 2:
+        if isinstance(probe, RotationProbe):
+            yield from _rotation_problems(probe, scene, key)
+        elif axis == "z" and scene.dimension == 2:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
         if isinstance(probe, PointProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
+
+
+def _rotation_problems(probe: RotationProbe, scene: Scene, key: str) -> Iterator[Problem]:
+    if scene.dimension == 2 and probe.axis != "z":
+        yield Problem.at(f"{key}.axis", "all turns in the plane are about z", "z", probe.axis)
+    across = [AXES.index(axis) for axis in AXES[: scene.dimension] if axis != probe.axis]
+    if all(probe.at[k] == probe.about[k] for k in across):
+        yield Problem.at(f"{key}.at", "the point lies on the axis", "a point beside it", list(probe.at))
 
 
 def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
@@ -82,6 +93,7 @@ def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Prob
             yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
         case (
             DisplacementProbe(structure=str(structure))
+            | RotationProbe(structure=str(structure))
             | ReactionProbe(structure=str(structure))
             | StructureEnergyProbe(structure=str(structure))
             | MomentumProbe(structure=str(structure))
