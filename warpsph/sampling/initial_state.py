@@ -19,28 +19,35 @@ def initial_field(field: VectorField | None, position: np.ndarray, key: str) -> 
     """
     if field is None:
         return np.zeros_like(position)
-    coordinates = dict(zip(AXES, position.T, strict=False))
     vector = np.empty_like(position)
     for component, value in enumerate(field):
-        vector[:, component] = evaluate(value, coordinates) if isinstance(value, str) else value
-        undefined = ~np.isfinite(vector[:, component])
-        if undefined.any():
-            at = ", ".join(f"{x:g}" for x in position[undefined][0])
-            message = f"it is not a finite number at {undefined.sum()} particles, first at ({at})"
-            problem = Problem.at(f"{key}.{component}", message, "finite at every particle", value)
-            raise SceneError([problem])
+        vector[:, component] = _values(value, position, f"{key}.{component}")
     return vector
 
 
+def _values(value: float | str, position: np.ndarray, key: str) -> np.ndarray:
+    """A number, or an expression at each position (n, dimension); SceneError where it is not finite."""
+    if not isinstance(value, str):
+        return np.full(len(position), value)
+    values = evaluate(value, dict(zip(AXES, position.T, strict=False)))
+    undefined = ~np.isfinite(values)
+    if undefined.any():
+        at = ", ".join(f"{x:g}" for x in position[undefined][0])
+        message = f"it is not a finite number at {undefined.sum()} particles, first at ({at})"
+        raise SceneError([Problem.at(key, message, "finite at every particle", value)])
+    return values
+
+
 def initial_pressure(
-    fluid: Fluid, position: np.ndarray, gravity: Sequence[float], spacing: float
+    fluid: Fluid, position: np.ndarray, gravity: Sequence[float], spacing: float, key: str
 ) -> np.ndarray:
-    """Pressure (n,) [Pa] at positions (n, dimension) [m]: uniform, or rho |g| depth and never below zero.
+    """Pressure (n,) [Pa] at positions (n, dimension) [m]: as given, or rho |g| depth and never below zero.
 
     Depth counts against gravity from the free surface: as given, or the top of the highest cell of the fluid.
+    Raises SceneError, naming the fluid's `key`, where an expression is not a finite number.
     """
-    if fluid.pressure.type == "uniform":
-        return np.full(len(position), fluid.pressure.value)
+    if fluid.pressure.type != "hydrostatic":
+        return _values(fluid.pressure.value, position, f"{key}.pressure.value")
     strength = float(np.linalg.norm(gravity))
     if strength == 0.0 or len(position) == 0:
         return np.zeros(len(position))

@@ -88,7 +88,9 @@ def _fluid_sets(scene: Scene, fluids: Positions) -> list[SampledSet]:
             kind="fluid",
             position=position,
             velocity=initial_field(scene.fluids[name].velocity, position, f"fluids.{name}.velocity"),
-            pressure=initial_pressure(scene.fluids[name], position, scene.gravity, scene.spacing),
+            pressure=initial_pressure(
+                scene.fluids[name], position, scene.gravity, scene.spacing, f"fluids.{name}"
+            ),
             volume=volume,
         )
         for name, position in fluids.items()

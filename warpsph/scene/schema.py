@@ -16,7 +16,7 @@ from warpsph.scene.checks import scene_problems
 from warpsph.scene.document import Document, placed
 from warpsph.scene.dump import to_yaml
 from warpsph.scene.errors import SceneError
-from warpsph.scene.expressions import VectorField
+from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
@@ -42,6 +42,8 @@ OutputField = Literal[
     "density",
     "pressure",
     "mass",
+    "vorticity",
+    "free_surface",
     "displacement",
     "cauchy_stress",
     "von_mises",
@@ -93,7 +95,17 @@ class UniformPressure(SceneModel):
     """Pressure [Pa]."""
 
 
-InitialPressure = Annotated[HydrostaticPressure | UniformPressure, Field(discriminator="type")]
+class ExpressionPressure(SceneModel):
+    """Initial pressure as a formula."""
+
+    type: Literal["expression"] = "expression"
+    value: Expression
+    """Pressure [Pa] as an expression in x, y, z [m]."""
+
+
+InitialPressure = Annotated[
+    HydrostaticPressure | UniformPressure | ExpressionPressure, Field(discriminator="type")
+]
 
 
 class Fluid(SceneModel):
@@ -155,7 +167,8 @@ class Output(SceneModel):
     """Write frames.h5. Default: false."""
 
     fields: tuple[OutputField, ...] = ("velocity", "density", "pressure")
-    """Fields in the frames beside position and id: velocity, mass; of fluids density, pressure; of structures
+    """Fields in the frames beside position and id: velocity, mass; of fluids density, pressure, vorticity [1/s] and
+    free_surface (1 there, else 0); of structures
     displacement, cauchy_stress, von_mises, green_lagrange_strain, volume_ratio (J).
     Default: velocity, density, pressure."""
 

@@ -11,6 +11,7 @@ import warp as wp
 from warpsph.frame import SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import arrays_of, host_view, write_array
+from warpsph.physics.flow_fields import FlowFields
 from warpsph.sampling import SampledSet
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, assemble
@@ -21,7 +22,12 @@ from warpsph.solver.step import Stepper
 from warpsph.solver.system import StepReport, in_order
 
 ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
-FIELDS = ("position", "velocity", "density", "pressure", "volume", "mass", "force", "id")
+FIELDS = (
+    *("position", "velocity", "density", "pressure", "volume", "mass", "force", "id"),
+    *("vorticity", "free_surface"),
+)
+OF_FLUIDS = ("density", "mass", "vorticity", "free_surface")
+OF_WALLS = ("force",)
 USUAL_FIELDS = ("position", "velocity", "density", "pressure", "mass")
 NOTABLE_MACH = 0.2
 """Speed over sound speed from which compressibility shows (density errors of four per cent)."""
@@ -35,6 +41,7 @@ class FluidSystem:
         self._scene = scene
         self._sampled = sampled
         self.parts = assemble(scene, sampled, launcher)
+        self._flow_fields = FlowFields(self.parts.assembly, self.parts.search.rows[FLUID])
         self._stepper = Stepper(scene, self.parts)
         self._stepper.start()
 
@@ -87,7 +94,8 @@ class FluidSystem:
         self._stepper.set_clock(TARGET=time)
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
-        """Fields: position, velocity, pressure, volume; of fluids also density and mass, of walls also force."""
+        """Fields: position, velocity, pressure, volume; of fluids also density, mass, vorticity, free_surface; of walls
+        also force."""
         self._stepper.synchronise()
         columns = self._columns({"position", *(USUAL_FIELDS if fields is None else fields)})
         index = np.array(self._host("set_index"))
@@ -161,6 +169,8 @@ class FluidSystem:
             "volume": lambda: velocity_volume[:, -1],
             "mass": lambda: np.full(a.layout.total, a.constants.mass),
             "force": self._wall_force,
+            "vorticity": self._flow_fields.vorticity,
+            "free_surface": self._flow_fields.free_surface,
         }
         unknown = sorted(names - {"id", *makers})
         if unknown:
@@ -182,4 +192,4 @@ class FluidSystem:
 
     @staticmethod
     def _has(kind: str, field: str) -> bool:
-        return field not in (("force",) if kind == "fluid" else ("density", "mass"))
+        return field not in (OF_WALLS if kind == "fluid" else OF_FLUIDS)

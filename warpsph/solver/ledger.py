@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from warpsph.frame import SetFrame
+from warpsph.probes.mechanics import cross
 
 
 @dataclass(frozen=True)
@@ -46,13 +47,6 @@ def sum_up(
         kinetic += 0.5 * float(m @ np.einsum("ij,ij->i", v, v))
         potential -= float(m @ (x @ gravity))
         momentum += m @ v
-        spin += m @ _cross(x, v)
+        spin += m @ cross(x, v)
     totals = ([float(p) for p in momentum], [float(p) for p in spin])
     return Ledger(time, mass, kinetic, potential, *totals, energies or {})
-
-
-def _cross(x: np.ndarray, v: np.ndarray) -> np.ndarray:
-    """x cross v: (n, 1) about z in the plane, (n, 3) in space."""
-    if x.shape[1] == 2:
-        return x[:, :1] * v[:, 1:] - x[:, 1:] * v[:, :1]
-    return np.cross(x, v)

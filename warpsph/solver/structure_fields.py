@@ -31,6 +31,11 @@ class StructureFields:
             "acceleration": lambda: self._state("acceleration"),
             "displacement": lambda: self._state("displacement"),
             "mass": lambda: parts.mass,
+            "strain_energy": lambda: self._energy(0),
+            "hourglass_energy": lambda: self._energy(1),
+            "contact_energy": lambda: np.zeros_like(parts.mass),
+            "work": lambda: self._state("work"),
+            "dissipated": lambda: self._state("dissipated"),
             "volume": lambda: host_view(self._model.reference.volume).astype(np.float64),
             "reaction": self._reaction,
             "cauchy_stress": lambda: host_view(self._model.scratch.cauchy),
@@ -85,6 +90,9 @@ class StructureFields:
 
     def _state(self, name: str) -> np.ndarray:
         return host_view(getattr(self._model.state, name))
+
+    def _energy(self, column: int) -> np.ndarray:
+        return host_view(self._model.scratch.energies)[:, column]
 
     def _host_reference(self) -> np.ndarray:
         return host_view(self._model.reference.position)

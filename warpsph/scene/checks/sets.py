@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from warpsph.scene.checks.common import DeclaredNames, prefixed, vector_field_problems
+from warpsph.scene.checks.common import DeclaredNames, expression_problems, prefixed, vector_field_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
@@ -26,6 +26,8 @@ def fluid_problems(scene: Scene) -> Iterator[Problem]:
         if pressure.type == "hydrostatic" and pressure.surface != "auto" and not any(scene.gravity):
             message = "without gravity there is no hydrostatic pressure"
             yield Problem.at(f"{key}.pressure.surface", message, "auto, or a gravity", pressure.surface)
+        if pressure.type == "expression":
+            yield from expression_problems(f"{key}.pressure.value", pressure.value, AXES[: scene.dimension])
 
 
 def _phase_problems(scene: Scene, fluid: Fluid, key: str) -> Iterator[Problem]:
