@@ -22,6 +22,8 @@ from warpsph.solver.structure_assembly import StructureParts
 from warpsph.solver.system import StepReport
 from warpsph.solver.time_laws import TimeLaws
 
+STIFFNESS_GRADE = 1.1
+
 
 class StructureStepper:
     """Advances structures in time."""
@@ -69,21 +71,29 @@ class StructureStepper:
         self._model.tick()
 
     def choose_step(self) -> tuple[float, int, str]:
-        """Size [s], number and limit of the next steps: as the stiffness of the present state allows."""
+        """Size [s], number and limit of the next steps: as the stiffness of the present state allows.
+
+        All steps up to the time to land on have one size. A size that changes to and fro would pump energy into the
+        fastest waves, for which a step is a large part of their period.
+        """
         dt, limit = self.stable_step, "elastic"
         if self._max_step < dt:
             dt, limit = self._max_step, "max_step"
         left = self.target - self.time
-        if left > SUB_STEPS * dt:
+        if math.isinf(left):
             return dt, SUB_STEPS, limit
-        count = max(math.ceil(left / dt * (1.0 - 1e-12)), 1)
-        return left / count, count, "frame"
+        count = max(math.ceil(left / dt * (1.0 - 1e-9)), 1)
+        return left / count, min(count, SUB_STEPS), "frame" if count <= SUB_STEPS else limit
 
     @property
     def stable_step(self) -> float:
-        """The step that the stiffness of the present state allows [s]: cfl 2 / omega."""
+        """The step that the stiffness of the present state allows [s]: cfl 2 / omega.
+
+        The stiffness is rounded up to a power of STIFFNESS_GRADE, so that the step seldom changes.
+        """
         stiffening = max(float(self._extremes[STIFFENING]), 1.0)
-        return self._cfl * 2.0 / (self.frequency * math.sqrt(stiffening))
+        grade = math.ceil(math.log(stiffening) / math.log(STIFFNESS_GRADE) - 1e-3)
+        return self._cfl * 2.0 / (self.frequency * STIFFNESS_GRADE ** (0.5 * grade))
 
     def begin(self, dt: float, damping: float = 0.0) -> None:
         """Set step size and damping, and the values of time laws for the coming steps."""

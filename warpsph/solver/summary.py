@@ -101,6 +101,7 @@ def summarise(
         "largest_mach": statistics.largest.get("speed", 0.0) / sim.sound_speed,
         **{f"largest_{name}": value for name, value in statistics.largest.items()},
         "bytes_per_particle": description["bytes_per_particle"],
+        "neighbours": description.get("neighbours"),
         "passes": description["passes"],
         "ledger": {"start": statistics.first.as_record(), "end": _end_ledger(sim, status)},
         "warnings": sim.system.warnings(statistics.largest) if statistics.count else [],
