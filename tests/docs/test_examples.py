@@ -75,7 +75,7 @@ def imported(page: str, directory: Path) -> dict[str, Any]:
 
 
 def test_the_law_of_the_materials_page_conserves_energy(tmp_path: Path) -> None:
-    """Its stress is the derivative of its energy: at cfl 0.4 the balance holds to a per cent, with much energy stored."""
+    """Its stress is the derivative of its energy: at cfl 0.4 the balance holds to a per cent."""
     try:
         names = imported("docs/materials.md", tmp_path)
     finally:
