@@ -4,18 +4,20 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from warpsph.physics.registration import register_material as register_material
     from warpsph.scene.loader import load_scene as load_scene
     from warpsph.scene.schema import Scene as Scene
     from warpsph.solver.run import run_scene as run_scene
     from warpsph.solver.simulation import Simulation as Simulation
 
 __version__ = "0.1.0"
-__all__ = ["Scene", "Simulation", "load_scene", "run_scene"]
+__all__ = ["Scene", "Simulation", "load_scene", "register_material", "run_scene"]
 
 _HOMES = {
     "Scene": "warpsph.scene.schema",
     "Simulation": "warpsph.solver.simulation",
     "load_scene": "warpsph.scene.loader",
+    "register_material": "warpsph.physics.registration",
     "run_scene": "warpsph.solver.run",
 }
 
