@@ -74,10 +74,10 @@ class StructureStepper:
         if self._max_step < dt:
             dt, limit = self._max_step, "max_step"
         left = self.target - self.time
-        if left > SUB_STEPS * dt:
+        if math.isinf(left):
             return dt, SUB_STEPS, limit
         count = max(math.ceil(left / dt * (1.0 - 1e-12)), 1)
-        return left / count, count, "frame"
+        return left / count, min(count, SUB_STEPS), limit if count > SUB_STEPS else "frame"
 
     @property
     def stable_step(self) -> float:
