@@ -143,12 +143,14 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
         first_source: int,
         start: wp.array(dtype=wp.int32),
         segment: int,
+        continues: int,
         neighbours: wp.array2d(dtype=wp.int32),
         ends: wp.array2d(dtype=wp.int32),
     ):
         """One target particle: append all sources within the radius (but not itself) to its row.
 
-        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]. What does not fit into the row is
+        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]; if it `continues`, it has neighbours of an
+        earlier range already. What does not fit into the row is
         counted and not stored; the host then makes the rows longer and repeats.
         """
         i = offset + wp.tid()
@@ -159,6 +161,8 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
         found = int(0)
         if segment > 0:
             found = ends[i, segment - 1]
+        if continues > 0:
+            found = ends[i, segment]
         # Only at the ends of a row of cells do the three adjacent cells fall into separate ranges.
         at_end = cell[0] == 0 or cell[0] == grid.cells[0] - 1
         ranges = wp.where(at_end, 3, 1)

@@ -57,6 +57,23 @@ def domain_problems(scene: Scene) -> Iterator[Problem]:
             yield Problem.at(key, message, allowed)
 
 
+def symmetry_problems(scene: Scene) -> Iterator[Problem]:
+    """Planes of symmetry along axes that do not exist or wrap round, or too close to each other."""
+    planes = scene.domain.symmetry
+    for face, coordinate in planes.items():
+        key, axis = f"domain.symmetry.{face}", face[0]
+        if axis not in AXES[: scene.dimension]:
+            yield no_such_axis(key, face, scene.dimension)
+        elif axis in scene.domain.periodic:
+            yield Problem.at(key, f"{axis} is a periodic axis", "planes across axes that do not wrap round")
+        elif face.endswith("max") and f"{axis}_min" in planes:
+            nearest = 2.0 * scene.search_radius
+            if coordinate - planes[f"{axis}_min"] < nearest:  # type: ignore[index]
+                message = f"it is too close to {axis}_min for the neighbour search"
+                allowed = f"at least twice the support radius with its skin, {nearest:g} m, from it"
+                yield Problem.at(key, message, allowed, coordinate)
+
+
 def _numerics_problems(scene: Scene) -> Iterator[Problem]:
     numerics = scene.numerics
     if numerics.sound_speed != "auto" and numerics.expected_speed is not None:
