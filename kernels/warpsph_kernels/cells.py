@@ -39,16 +39,15 @@ def make_grid_struct(arithmetic: Arithmetic) -> Any:
 
 
 @cache
-def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
-    """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
-    dim = arithmetic.dimension
-    real, vector, point, integers = arithmetic.real, arithmetic.vector, arithmetic.point, arithmetic.integers
+def make_cell_functions(arithmetic: Arithmetic) -> tuple[Any, Any, Any]:
+    """Return the device functions of a walk through the cells around a place.
+
+    wrap(coordinate, count): a cell coordinate brought into the grid; cell_of(x, grid): the cell of a position in run
+    coordinates; row_base(cell, row, grid): the bucket at x = 0 of the row-th of the rows adjacent to a cell.
+    """
+    dim, real = arithmetic.dimension, arithmetic.real
+    vector, integers = arithmetic.vector, arithmetic.integers
     grid_type = make_grid_struct(arithmetic)
-    narrow = make_narrow(arithmetic)
-    separation = make_separation(arithmetic, periodic)
-    axes = "".join("p" if flag else "o" for flag in periodic)
-    module = f"warpsph_cells_{arithmetic.label}_{axes}"
-    rows = 3 ** (dim - 1)
 
     @wp.func
     def wrap(coordinate: int, count: int):
@@ -73,6 +72,22 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
             return y * grid.cells[0]
         z = wrap(cell[wp.static(dim - 1)] + row // 3 - 1, grid.cells[wp.static(dim - 1)])
         return (z * grid.cells[1] + y) * grid.cells[0]
+
+    return wrap, cell_of, row_base
+
+
+@cache
+def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
+    """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
+    dim = arithmetic.dimension
+    real, vector, point = arithmetic.real, arithmetic.vector, arithmetic.point
+    grid_type = make_grid_struct(arithmetic)
+    narrow = make_narrow(arithmetic)
+    separation = make_separation(arithmetic, periodic)
+    axes = "".join("p" if flag else "o" for flag in periodic)
+    module = f"warpsph_cells_{arithmetic.label}_{axes}"
+    rows = 3 ** (dim - 1)
+    wrap, cell_of, row_base = make_cell_functions(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
     def take_positions(

@@ -35,16 +35,16 @@ class FluidOptions:
     density_diffusion: str
     viscosity: str
     wall: str
-    """Wall method: none, dynamic or extrapolated."""
+    """Wall method: none, dynamic, extrapolated or modified_dynamic."""
     wall_suction: bool
-    """Whether extrapolated walls may have negative pressure."""
+    """Whether walls that are not dynamic may have negative pressure."""
     wall_friction: bool
     """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
 
     @property
     def has_barrier(self) -> bool:
         """Whether wall surfaces push back particles that come too near, see `make_barrier`."""
-        return self.wall == "extrapolated"
+        return self.wall in ("extrapolated", "modified_dynamic")
 
     @property
     def module(self) -> str:

@@ -21,11 +21,14 @@ from warpsph.physics.fluid import (
     material,
     select_code,
 )
+from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.physics.sound_speed import choose_sound_speed
 from warpsph.physics.state import density_deviation
 from warpsph.physics.symmetry import SymmetryModel, images_of
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
+from warpsph.sampling.mirror import mirror_ways
+from warpsph.sampling.walls import period_of
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
 
@@ -94,7 +97,10 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
     )
     surface = make_wall_surface(arithmetic, flags, launcher.device)
     fluid = FluidModel(assembly, lists, surface)
-    walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface) if layout.walls else None
+    walls = None
+    if layout.walls:
+        mirror = _mirrored_walls(scene, boundaries, assembly, search)
+        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, mirror)
     symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
     return Parts(assembly, search, fluid, walls, symmetry, *_reordered(assembly, search, walls))
 
@@ -104,6 +110,17 @@ def _layout(scene: Scene, sets: Sequence[SampledSet]) -> Layout:
     walls = sum(len(s.position) for s in sets if s.kind == "boundary")
     images = images_of(scene, fluids)
     return Layout(fluids=fluids + images, walls=walls, images=images)
+
+
+def _mirrored_walls(
+    scene: Scene, boundaries: Sequence[SampledSet], assembly: Assembly, search: NeighbourSearch
+) -> MirroredWalls | None:
+    """The mirror points of the walls, where their method wants them."""
+    if assembly.options.wall != "modified_dynamic":
+        return None
+    period = period_of(scene)
+    ways = [mirror_ways(scene.boundaries[s.name], s.position, scene.spacing, period) for s in boundaries]
+    return MirroredWalls(assembly, search, np.concatenate(ways))
 
 
 def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:

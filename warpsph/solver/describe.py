@@ -57,7 +57,8 @@ def _passes(parts: Parts) -> list[str]:
     walls = parts.walls
     if walls is None:
         return passes
-    imposed = "wall pressure" if walls.method == "dynamic" else "extrapolate to walls"
+    names = {"dynamic": "wall pressure", "modified_dynamic": "mirror points of walls"}
+    imposed = names.get(walls.method, "extrapolate to walls")
     passes.insert(passes.index("accelerate"), imposed)
     if walls.method == "dynamic":
         passes.insert(-1, "update wall density")

@@ -60,6 +60,9 @@ def domain_problems(scene: Scene) -> Iterator[Problem]:
 def symmetry_problems(scene: Scene) -> Iterator[Problem]:
     """Planes of symmetry along axes that do not exist or wrap round, or too close to each other."""
     planes = scene.domain.symmetry
+    if planes and scene.boundaries and scene.numerics.wall.type == "modified_dynamic":
+        message = "the mirror points of modified_dynamic walls do not see the images of the fluid"
+        yield Problem.at("domain.symmetry", message, "another wall method, or no planes of symmetry")
     for face, coordinate in planes.items():
         key, axis = f"domain.symmetry.{face}", face[0]
         if axis not in AXES[: scene.dimension]:
