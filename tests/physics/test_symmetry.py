@@ -125,3 +125,9 @@ def test_still_water_stays_still_at_a_plane():
 def test_planes_that_mean_nothing_are_refused(symmetry, message):
     with pytest.raises(ValueError, match=message):
         drop((0.0, 0.0), symmetry, ["0", "0"])
+
+
+def test_models_that_need_more_of_an_image_than_it_carries_are_refused():
+    base = tank(0.0, -0.3, {"x_min": 0.0}).model_dump()
+    with pytest.raises(ValueError, match=r"numerics\.wall: at planes of symmetry"):
+        Scene.model_validate(base | {"numerics": {"wall": {"type": "modified_dynamic"}}})

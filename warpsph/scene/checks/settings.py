@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from typing import TYPE_CHECKING
 
 from warpsph.scene.checks.common import no_such_axis, repeated_problems
@@ -57,12 +57,30 @@ def domain_problems(scene: Scene) -> Iterator[Problem]:
             yield Problem.at(key, message, allowed)
 
 
+_MIRRORED: Mapping[str, frozenset[str]] = {
+    "density": frozenset({"continuity"}),
+    "density_diffusion": frozenset({"none", "molteni_colagrossi", "fourtakas"}),
+    "viscosity": frozenset({"none", "artificial", "laminar"}),
+    "particle_order": frozenset({"none"}),
+    "wall": frozenset({"dynamic", "extrapolated"}),
+}
+"""Models that read of a neighbour only what its image carries: position, velocity, volume, pressure, density."""
+
+
+def _unmirrored_problems(scene: Scene) -> Iterator[Problem]:
+    for key, mirrored in _MIRRORED.items():
+        model = getattr(scene.numerics, key, None)
+        name = getattr(model, "type", model)
+        if name is not None and name not in mirrored and (key != "wall" or scene.boundaries):
+            message = "at planes of symmetry it would need more of the images than they carry"
+            yield Problem.at(f"numerics.{key}", message, ", ".join(sorted(mirrored)), name)
+
+
 def symmetry_problems(scene: Scene) -> Iterator[Problem]:
     """Planes of symmetry along axes that do not exist or wrap round, or too close to each other."""
     planes = scene.domain.symmetry
-    if planes and scene.boundaries and scene.numerics.wall.type == "modified_dynamic":
-        message = "the mirror points of modified_dynamic walls do not see the images of the fluid"
-        yield Problem.at("domain.symmetry", message, "another wall method, or no planes of symmetry")
+    if planes:
+        yield from _unmirrored_problems(scene)
     for face, coordinate in planes.items():
         key, axis = f"domain.symmetry.{face}", face[0]
         if axis not in AXES[: scene.dimension]:
