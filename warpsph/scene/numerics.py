@@ -96,7 +96,18 @@ class ModifiedDynamicWall(SceneModel):
     """Whether the pressure of a wall may be negative, as for extrapolated walls. Default: false."""
 
 
-WallMethod = Annotated[DynamicWall | ExtrapolatedWall | ModifiedDynamicWall, Field(discriminator="type")]
+class RepulsiveWall(SceneModel):
+    """Wall particles take the mean pressure and velocity of the fluid, and the first layer repels it, after Liu, Shao &
+    Chang (2012)."""
+
+    type: Literal["repulsive"] = "repulsive"
+    suction: Flag = False
+    """Whether the pressure of a wall may be negative, as for extrapolated walls. Default: false."""
+
+
+WallMethod = Annotated[
+    DynamicWall | ExtrapolatedWall | ModifiedDynamicWall | RepulsiveWall, Field(discriminator="type")
+]
 
 
 class Numerics(SceneModel):

@@ -62,7 +62,7 @@ _MIRRORED: Mapping[str, frozenset[str]] = {
     "density_diffusion": frozenset({"none", "molteni_colagrossi", "fourtakas"}),
     "viscosity": frozenset({"none", "artificial", "laminar"}),
     "particle_order": frozenset({"none"}),
-    "wall": frozenset({"dynamic", "extrapolated"}),
+    "wall": frozenset({"dynamic", "extrapolated", "repulsive"}),
 }
 """Models that read of a neighbour only what its image carries: position, velocity, volume, pressure, density."""
 
