@@ -61,6 +61,7 @@ _MIRRORED: Mapping[str, frozenset[str]] = {
     "density": frozenset({"continuity"}),
     "density_diffusion": frozenset({"none", "molteni_colagrossi", "fourtakas"}),
     "viscosity": frozenset({"none", "artificial", "laminar"}),
+    "kernel_gradient": frozenset({"plain"}),
     "particle_order": frozenset({"none"}),
     "wall": frozenset({"dynamic", "extrapolated", "repulsive"}),
 }
