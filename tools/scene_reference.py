@@ -80,6 +80,7 @@ OBJECTS = (
 UNIONS = (
     ("Shapes", "`shape` of fluids and boundaries", ("Boundary", "shape")),
     ("Motions", "each item of `motion` of boundaries", ("Boundary", "motion")),
+    ("State", "`numerics.state`", ("Numerics", "state")),
     ("Density diffusion", "`numerics.density_diffusion`", ("Numerics", "density_diffusion")),
     ("Viscosity", "`numerics.viscosity`", ("Numerics", "viscosity")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
@@ -88,7 +89,6 @@ UNIONS = (
     ("References", "each value of `references`", None),
 )
 PARTS = (
-    ("State", "`numerics.state`", "Tait"),
     ("Bounds", "`bounds` of a plane, `domain.kill_box`", "Bounds"),
     ("Rotation", "`rotate` of a transform", "Rotation"),
     ("Table in the scene", "`table` of a series reference", "InlineTable"),

@@ -35,7 +35,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     pack, unpack = make_packing(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     shape, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
-    state = STATES[options.state](arithmetic)
+    state = STATES[options.state].make(arithmetic)
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     barrier = make_barrier(arithmetic)
@@ -108,7 +108,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         change = real(wp.float64(0.5) * clock[0]) * half_steps * density_rate[w]
         deviation = wp.max(density_deviation[w] + change, real(0.0))
         density_deviation[w] = deviation
-        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
         position_pressure[w] = pack(unpack(position_pressure[w]), p)
         if wp.static(options.wall_friction):
             friction[i] = pack(unpack(velocity_volume[w]), friction[i][dim])

@@ -99,7 +99,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
-    state = STATES[options.state](arithmetic)
+    state = STATES[options.state].make(arithmetic)
     diffusion = DIFFUSIONS[options.density_diffusion](arithmetic)
     has_viscosity = options.viscosity != "none"
     fluid_force = make_pair_force(options, has_viscosity)
@@ -128,7 +128,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         position[i] = x
         density_deviation[i] = deviation
         velocity_volume[i] = pack(v, c.mass / (c.rest_density + deviation))
-        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
         position_pressure[i] = pack(narrow(x, origin), p)
 
     @wp.kernel(module=module, enable_backward=False)
@@ -146,7 +146,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         i = offset + wp.tid()
         deviation = density_deviation[i]
         x = narrow(position[i], origin)
-        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
         position_pressure[i] = pack(x, p)
         position_density[i] = pack(x, deviation)
         velocity_volume[i] = pack(unpack(velocity_volume[i]), c.mass / (c.rest_density + deviation))

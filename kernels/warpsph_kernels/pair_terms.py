@@ -12,6 +12,7 @@ from typing import Any
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.state import parameters_type
 
 Factory = Callable[[Arithmetic], Any]
 
@@ -20,7 +21,8 @@ Factory = Callable[[Arithmetic], Any]
 def make_constants_struct(arithmetic: Arithmetic) -> Any:
     """Return the struct of a fluid's numbers, in SI units.
 
-    `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0; for `barrier` see `make_barrier`.
+    `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0; for `barrier` see `make_barrier`. The two vectors of
+    parameters are those of the state and of a viscosity that a user has added.
     """
     real, vector = arithmetic.real, arithmetic.vector
 
@@ -36,7 +38,6 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "wall_volume",
         "rest_density",
         "sound_speed",
-        "gamma",
         "artificial_viscosity",
         "dynamic_viscosity",
         "diffusion",
@@ -44,7 +45,9 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "barrier",
         "inverse_barrier_reach",
     )
-    FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | {"gravity": vector, "period": vector}
+    parameters = dict.fromkeys(("state_parameters", "viscosity_parameters"), parameters_type(arithmetic))
+    vectors = {"gravity": vector, "period": vector}
+    FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | vectors | parameters
     return wp.struct(FluidConstants)
 
 

@@ -4,26 +4,47 @@ The deviation is what the run stores: in single precision rho itself would lose 
 pressure of a weakly compressible fluid.
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
+from dataclasses import dataclass
 from functools import cache
-from types import MappingProxyType
 from typing import Any
 
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic
 
+PARAMETERS = 4
+"""Numbers that a formula may take from the scene, in a vector whose unused entries are zero."""
+
+
+def parameters_type(arithmetic: Arithmetic) -> Any:
+    """Return the type of the vector of a formula's parameters."""
+    return wp.types.vector(PARAMETERS, arithmetic.real)
+
+
+@dataclass(frozen=True)
+class EquationOfState:
+    """A state by its device functions of (rho - rho0, rho0, c0, parameters); densities in kg/m^dim, speeds in m/s.
+
+    make(arithmetic): the pressure p [Pa]; make_stiffening(arithmetic): the square of the local over the reference
+    sound speed, dp/drho / c0^2.
+    """
+
+    make: Callable[[Arithmetic], Any]
+    make_stiffening: Callable[[Arithmetic], Any]
+
 
 @cache
 def make_tait(arithmetic: Arithmetic) -> Any:
-    """Tait: p = rho0 c0^2 / gamma ((rho/rho0)^gamma - 1) (Monaghan 1994).
+    """Tait: p = rho0 c0^2 / gamma ((rho/rho0)^gamma - 1) (Monaghan 1994); gamma is the first parameter.
 
     With e = rho/rho0 - 1 the bracket is gamma e (1 + (gamma-1)/2 e (1 + (gamma-2)/3 e (...))), which has no
     cancellation. Seven factors are the whole binomial of gamma = 7; what is left for another gamma is of order e^8.
     """
-    real = arithmetic.real
+    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
 
-    def tait(deviation: real, rest_density: real, sound_speed: real, gamma: real):
+    def tait(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
+        gamma = parameters[0]
         e = deviation / rest_density
         series = real(1.0)
         for m in range(7):
@@ -34,5 +55,43 @@ def make_tait(arithmetic: Arithmetic) -> Any:
     return wp.func(tait)
 
 
-STATES: Mapping[str, Callable[[Arithmetic], Any]] = MappingProxyType({"tait": make_tait})
-"""Equation of state by its name in a scene: device function (rho - rho0, rho0, c0, gamma) -> p [Pa]."""
+@cache
+def make_tait_stiffening(arithmetic: Arithmetic) -> Any:
+    """(rho/rho0)^(gamma - 1)."""
+    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+
+    def tait_stiffening(
+        deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector
+    ):
+        return wp.pow(real(1.0) + deviation / rest_density, parameters[0] - real(1.0))
+
+    return wp.func(tait_stiffening)
+
+
+@cache
+def make_linear(arithmetic: Arithmetic) -> Any:
+    """Linear: p = c0^2 (rho - rho0)."""
+    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+
+    def linear(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
+        return sound_speed * sound_speed * deviation
+
+    return wp.func(linear)
+
+
+@cache
+def make_no_stiffening(arithmetic: Arithmetic) -> Any:
+    """The sound speed is the same at every density."""
+    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+
+    def no_stiffening(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
+        return real(1.0)
+
+    return wp.func(no_stiffening)
+
+
+STATES: dict[str, EquationOfState] = {
+    "tait": EquationOfState(make_tait, make_tait_stiffening),
+    "linear": EquationOfState(make_linear, make_no_stiffening),
+}
+"""By name; `warpsph.register_state` adds to it."""

@@ -37,7 +37,7 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     make_move(options)
     make_surface_kernels(options)
     cells = make_cell_kernels(arithmetic, periodic).module
-    clock = make_clock_kernels(arithmetic).module
+    clock = make_clock_kernels(arithmetic, options.state).module
     for name in (options.module, cells, clock, reorder.MODULE):
         wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
     assert len(list(tmp_path.glob("*.ptx"))) == 4

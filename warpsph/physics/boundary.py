@@ -16,7 +16,6 @@ from warpsph.particles.launch import Pass
 from warpsph.particles.neighbours import NeighbourRows
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
-from warpsph.physics.state import density_deviation
 from warpsph.sampling.kinematics import Pose, RigidMotion
 from warpsph.scene.placement import cross_matrix
 
@@ -118,15 +117,12 @@ class WallModel:
         """Give dynamic walls the density at which they are in equilibrium with the fluid before them."""
         if self.method != "dynamic":
             return
-        a, c = self._assembly, self._assembly.constants
+        a = self._assembly
         rows = self._lists.wall
         assert rows is not None
         self._extrapolation(rows).run(self.count)
         pressure = host_view(a.scratch.position_pressure)[a.layout.fluids :, -1].astype(np.float64)
-        strength = float(c.rest_density) * float(c.sound_speed) ** 2
-        deviation = density_deviation(
-            np.maximum(pressure, 0.0), float(c.rest_density), strength, float(c.gamma)
-        )
+        deviation = a.density_deviation(np.maximum(pressure, 0.0))
         write_array(a.state.density_deviation[a.layout.fluids :], deviation)
 
     def react(self) -> wp.array:

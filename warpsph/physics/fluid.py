@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
+from warpsph_kernels.state import PARAMETERS, parameters_type
 
 from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
@@ -18,6 +20,11 @@ BARRIER_REACH = 0.75
 keep a whole spacing."""
 BARRIER_STRENGTH = 0.4
 """Largest acceleration by the barrier in units of c0^2 / dp: it stops a particle that comes in at half of c0."""
+
+
+def padded(numbers: Sequence[float]) -> list[float]:
+    """Return the parameters of a formula with zeros behind them, as many as its vector holds."""
+    return [*numbers, *(0.0 for _ in range(PARAMETERS - len(numbers)))]
 
 
 def smoothing_length(scene: Scene) -> float:
@@ -38,7 +45,7 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
         arithmetic=arithmetic,
         periodic=space.periodic,
         smoothing=numerics.kernel,
-        state=numerics.state.type,
+        state=numerics.state.law,
         pressure_form=numerics.pressure_form,
         density_diffusion=numerics.density_diffusion.type,
         viscosity=numerics.viscosity.type,
@@ -59,7 +66,8 @@ def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sou
     c.smoothing_length, c.inverse_h = h, 1.0 / h
     c.norm, c.slope_norm = norm, norm / h**2
     c.mass, c.wall_volume = fluid.density * volume, volume
-    c.rest_density, c.sound_speed, c.gamma = fluid.density, sound_speed, numerics.state.gamma
+    c.rest_density, c.sound_speed = fluid.density, sound_speed
+    c.state_parameters = parameters_type(arithmetic)(*padded(numerics.state.numbers))
     c.artificial_viscosity = getattr(numerics.viscosity, "alpha", 0.0) * h * sound_speed * fluid.density
     c.dynamic_viscosity = fluid.density * fluid.kinematic_viscosity
     c.diffusion = getattr(numerics.density_diffusion, "delta", 0.0) * h * sound_speed

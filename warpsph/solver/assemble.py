@@ -10,6 +10,7 @@ import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.clock import CLOCK_SIZE
 
+from warpsph.laws.states import STATE_LAWS
 from warpsph.particles.launch import Launcher
 from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
@@ -22,7 +23,6 @@ from warpsph.physics.fluid import (
     select_code,
 )
 from warpsph.physics.sound_speed import choose_sound_speed
-from warpsph.physics.state import density_deviation
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
 from warpsph.scene.schema import Scene
@@ -84,6 +84,7 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
         state=allocate_state(arithmetic, layout, launcher.device),
         scratch=allocate_scratch(arithmetic, layout, launcher.device),
         clock=wp.zeros(CLOCK_SIZE, dtype=wp.float64, device=launcher.device),
+        state_law=STATE_LAWS[options.state],
     )
     _fill_state(scene, sets, assembly)
     search = _make_search(scene, assembly)
@@ -131,8 +132,7 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
     position = np.concatenate([s.position for s in sets])
     velocity = np.concatenate([s.velocity for s in sets])
     pressure = np.concatenate([s.pressure for s in sets])
-    stiffness = fluid.density * float(c.sound_speed) ** 2
-    deviation = density_deviation(pressure, fluid.density, stiffness, float(c.gamma))
+    deviation = assembly.density_deviation(pressure)
     volume = float(c.mass) / (fluid.density + deviation)
     write_array(state.position, position)
     write_array(state.velocity_volume, np.column_stack([velocity, volume]))
