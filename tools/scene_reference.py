@@ -83,6 +83,7 @@ UNIONS = (
     ("State", "`numerics.state`", ("Numerics", "state")),
     ("Density diffusion", "`numerics.density_diffusion`", ("Numerics", "density_diffusion")),
     ("Viscosity", "`numerics.viscosity`", ("Numerics", "viscosity")),
+    ("Viscosity laws", "`law` of a viscous stress", ("ViscousStress", "law")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
     ("Initial pressure", "`pressure` of fluids", ("Fluid", "pressure")),
     ("Probes", "each value of `probes`", None),

@@ -36,6 +36,11 @@ class Arithmetic:
         return wp.types.vector(self.dimension + 1, self.real)
 
     @cached_property
+    def matrix(self) -> Any:
+        """A tensor of the pair loops, `dimension` rows and columns."""
+        return wp.types.matrix((self.dimension, self.dimension), self.real)
+
+    @cached_property
     def point(self) -> Any:
         """A position, always in double precision."""
         return wp.types.vector(self.dimension, wp.float64)

@@ -40,6 +40,8 @@ class FluidOptions:
     """Whether extrapolated walls may have negative pressure."""
     wall_friction: bool
     """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
+    stress: str = "none"
+    """What the viscous stress tensor is made of: none, a law of `warpsph_kernels.rheology`, or sub_particle_scale."""
 
     @property
     def has_barrier(self) -> bool:
@@ -51,6 +53,10 @@ class FluidOptions:
         """Name of the kernel module of these options, the same in every process so that its binary is reused."""
         digest = hashlib.sha256(repr(self).encode()).hexdigest()[:10]
         return f"warpsph_fluid_{self.arithmetic.label}_{digest}"
+
+    def module_of(self, concept: str) -> str:
+        """Name of the module of kernels that only some scenes have."""
+        return f"{self.module}_{concept}"
 
 
 class FluidKernels(NamedTuple):

@@ -90,12 +90,15 @@ def make_artificial_viscosity(arithmetic: Arithmetic) -> Any:
 
 @cache
 def make_laminar_viscosity(arithmetic: Arithmetic) -> Any:
-    """2 mu r^2 / (r^2 + 0.01 h^2) v_ab (Morris, Fox & Zhu 1997, eq. 22, in volume form)."""
+    """2 mu v_ab (Morris, Fox & Zhu 1997, eq. 22, in volume form).
+
+    Their factor x_ab . grad W / (r^2 + 0.01 h^2) is F without the softening, which guards a division that F does not
+    have: it would take 1.5 per cent of the viscosity away, at any resolution.
+    """
     constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
 
     def laminar_viscosity(c: constants_type, x_ab: vector, v_ab: vector, r2: real):
-        softened = r2 + real(0.01) * c.smoothing_length * c.smoothing_length
-        return real(2.0) * c.dynamic_viscosity * r2 / softened * v_ab
+        return real(2.0) * c.dynamic_viscosity * v_ab
 
     return wp.func(laminar_viscosity)
 
@@ -163,9 +166,12 @@ def make_barrier(arithmetic: Arithmetic) -> Any:
 
 
 PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType({"symmetric": make_symmetric_pressure})
-VISCOSITIES: Mapping[str, Factory] = MappingProxyType(
-    {"none": make_no_viscosity, "artificial": make_artificial_viscosity, "laminar": make_laminar_viscosity}
-)
+VISCOSITIES: dict[str, Factory] = {
+    "none": make_no_viscosity,
+    "artificial": make_artificial_viscosity,
+    "laminar": make_laminar_viscosity,
+}
+"""By name; `warpsph.register_viscosity` adds to it."""
 DIFFUSIONS: Mapping[str, Factory] = MappingProxyType(
     {"none": make_no_diffusion, "molteni_colagrossi": make_molteni_colagrossi, "fourtakas": make_fourtakas}
 )

@@ -8,6 +8,7 @@ from warpsph_kernels.boundary import make_wall_kernels
 from warpsph_kernels.cells import make_cell_kernels
 from warpsph_kernels.clock import make_clock_kernels
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.stress import make_stress_kernels
 from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
@@ -31,13 +32,16 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
         wall=wall,
         wall_suction=False,
         wall_friction=True,
+        stress="carreau" if dimension == 2 else "sub_particle_scale",
     )
     make_fluid_kernels(options)
     make_wall_kernels(options)
     make_move(options)
     make_surface_kernels(options)
+    make_stress_kernels(options)
     cells = make_cell_kernels(arithmetic, periodic).module
     clock = make_clock_kernels(arithmetic, options.state).module
-    for name in (options.module, cells, clock, reorder.MODULE):
+    modules = (options.module, options.module_of("stress"), cells, clock, reorder.MODULE)
+    for name in modules:
         wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
-    assert len(list(tmp_path.glob("*.ptx"))) == 4
+    assert len(list(tmp_path.glob("*.ptx"))) == len(modules)

@@ -20,7 +20,9 @@ def momentum_scale(sim: Simulation) -> float:
 
 @pytest.mark.parametrize("dimension", [2, 3])
 @pytest.mark.parametrize(("precision", "rounding"), [("single", 2e-6), ("double", 1e-14)])
-@pytest.mark.parametrize("viscosity", ["none", "artificial", "laminar"])
+@pytest.mark.parametrize(
+    "viscosity", ["none", "artificial", "laminar", "viscous_stress", "sub_particle_scale"]
+)
 def test_momentum_of_a_free_drop_is_conserved_to_rounding(dimension, precision, rounding, viscosity):
     scene = free_drop(dimension, numerics={"precision": precision, "viscosity": {"type": viscosity}})
     sim = Simulation(scene, device="cpu")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -27,6 +27,7 @@ class WallModel:
         motions: rigid motion by set index, for walls that move.
         sets: number of all sets, since a particle names its set by index.
         surface: arrays that this model fills for the fluid.
+        fluid_reaction: adds to the force on each wall particle [N] what acts beside pair forces.
     """
 
     def __init__(
@@ -36,9 +37,11 @@ class WallModel:
         motions: Mapping[int, RigidMotion],
         sets: int,
         surface: WallSurface,
+        fluid_reaction: Callable[[wp.array], None],
     ) -> None:
         self.count = assembly.layout.walls
         self.surface = surface
+        self._fluid_reaction = fluid_reaction
         self._assembly = assembly
         self._lists = lists
         self._motions = dict(motions)
@@ -128,6 +131,7 @@ class WallModel:
     def react(self) -> wp.array:
         """Return the force of the fluid on each wall particle [N], shape (walls,); needs synchronised records."""
         self._react.run(self.count)
+        self._fluid_reaction(self.force)
         return self.force
 
     def bind_lists(self) -> None:

@@ -2,39 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import Any
 
+import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
-from warpsph_kernels.state import PARAMETERS, parameters_type
+from warpsph_kernels.state import parameters_type
 
 from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
-from warpsph.scene.schema import Fluid, Scene
+from warpsph.physics.material import largest_kinematic_viscosity, material, padded, smoothing_length
+from warpsph.physics.stress import StressModel
+from warpsph.scene.schema import Scene
 
 BARRIER_REACH = 0.75
 """Distance from the surface particles of a wall, in spacings, below which the wall pushes fluid back. Particles at rest
 keep a whole spacing."""
 BARRIER_STRENGTH = 0.4
 """Largest acceleration by the barrier in units of c0^2 / dp: it stops a particle that comes in at half of c0."""
-
-
-def padded(numbers: Sequence[float]) -> list[float]:
-    """Return the parameters of a formula with zeros behind them, as many as its vector holds."""
-    return [*numbers, *(0.0 for _ in range(PARAMETERS - len(numbers)))]
-
-
-def smoothing_length(scene: Scene) -> float:
-    """Return h [m]."""
-    return scene.numerics.h_over_dp * scene.spacing
-
-
-def material(scene: Scene) -> Fluid:
-    """Return a fluid whose density and viscosity are those of all fluids of the scene, which are one phase."""
-    return next(iter(scene.fluids.values()))
 
 
 def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_walls: bool) -> FluidOptions:
@@ -48,11 +35,26 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
         state=numerics.state.law,
         pressure_form=numerics.pressure_form,
         density_diffusion=numerics.density_diffusion.type,
-        viscosity=numerics.viscosity.type,
+        viscosity=_pair_viscosity(scene),
+        stress=_stress(scene),
         wall=numerics.wall.type if has_walls else "none",
         wall_suction=getattr(numerics.wall, "suction", True),
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
     )
+
+
+def _pair_viscosity(scene: Scene) -> str:
+    """Return the viscosity that acts pair by pair; a stress does not."""
+    name = scene.numerics.viscosity.type
+    return {"viscous_stress": "none", "sub_particle_scale": "laminar"}.get(name, name)
+
+
+def _stress(scene: Scene) -> str:
+    """Return what the stress tensor of the fluid is made of."""
+    viscosity = scene.numerics.viscosity
+    if viscosity.type == "viscous_stress":
+        return viscosity.law.type
+    return viscosity.type if viscosity.type == "sub_particle_scale" else "none"
 
 
 def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sound_speed: float) -> Any:
@@ -85,20 +87,23 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
     An artificial viscosity counts as alpha h c0 / 8 in 2D and / 10 in 3D (Monaghan 2005).
     """
     viscosity = scene.numerics.viscosity
-    if viscosity.type == "laminar":
-        return material(scene).kinematic_viscosity
+    if viscosity.type == "none":
+        return 0.0
     if viscosity.type == "artificial":
         return (
             viscosity.alpha * smoothing_length(scene) * sound_speed / (8.0 if scene.dimension == 2 else 10.0)
         )
-    return 0.0
+    return largest_kinematic_viscosity(scene)
 
 
 class FluidModel:
     """The passes of the fluid. `count` particles are alive."""
 
-    def __init__(self, assembly: Assembly, lists: Lists, surface: WallSurface) -> None:
+    def __init__(self, assembly: Assembly, lists: Lists, surface: WallSurface, scene: Scene) -> None:
         self._lists = lists
+        self._stress = (
+            StressModel(assembly, lists, surface, scene) if assembly.options.stress != "none" else None
+        )
         kernels = make_fluid_kernels(assembly.options)
         launcher, c, clock, origin = assembly.launcher, assembly.constants, assembly.clock, assembly.origin
         state, scratch = assembly.state, assembly.scratch
@@ -141,9 +146,16 @@ class FluidModel:
         self._kernels = kernels
         self.bind_lists()
 
+    @property
+    def own_arrays(self) -> dict[str, wp.array]:
+        """Arrays of shape (fluids,) that follow the order of the fluid and belong into a checkpoint."""
+        return self._stress.own_arrays if self._stress else {}
+
     def bind_lists(self) -> None:
         """Build the passes that read neighbour lists; needed again when the rows have grown."""
         a, rows = self._assembly, self._lists.fluid
+        if self._stress:
+            self._stress.bind_lists()
         self._accelerate = a.launcher.bind(
             "accelerate",
             self._kernels.accelerate,
@@ -171,6 +183,12 @@ class FluidModel:
         )
 
     @property
+    def passes(self) -> list[str]:
+        """Names of the passes from the forces to the density, in the order of a step."""
+        stress = ["stress"] if self._stress else []
+        return [*stress, "accelerate", "kick and drift", "update density"]
+
+    @property
     def count(self) -> int:
         return self._lists.fluid.targets.count
 
@@ -180,7 +198,11 @@ class FluidModel:
 
     def accelerate(self) -> None:
         """Sum the forces."""
+        if self._stress:
+            self._stress.find()
         self._accelerate.run(self.count)
+        if self._stress:
+            self._stress.add()
 
     def kick_and_drift(self) -> None:
         """Advance the velocity over the step and the position over its second half."""
@@ -189,6 +211,11 @@ class FluidModel:
     def update_density(self) -> None:
         """Sum the density rate and advance the density over the second half of the step."""
         self._update_density.run(self.count)
+
+    def react(self, force: wp.array) -> None:
+        """Add what beside pair forces acts on each wall particle [N], shape (walls,)."""
+        if self._stress:
+            self._stress.react(force)
 
     def synchronise(self) -> None:
         """Bring pressure and volume to the time of position and density."""

@@ -6,7 +6,8 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
-from warpsph.scene.types import Real, SceneModel
+from warpsph.scene.expressions import Expression
+from warpsph.scene.types import NonNegativeReal, PositiveReal, Real, SceneModel
 
 
 class Tait(SceneModel):
@@ -93,4 +94,83 @@ class LaminarViscosity(SceneModel):
     type: Literal["laminar"] = "laminar"
 
 
-Viscosity = Annotated[NoViscosity | ArtificialViscosity | LaminarViscosity, Field(discriminator="type")]
+class SubParticleScale(SceneModel):
+    """Laminar viscosity and a Smagorinsky stress for eddies below the spacing (Dalrymple & Rogers 2006)."""
+
+    type: Literal["sub_particle_scale"] = "sub_particle_scale"
+    smagorinsky: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.12
+    """Smagorinsky constant [1]. Default: 0.12."""
+
+    isotropic: Annotated[Real, Field(ge=0.0, le=1.0)] = 0.0066
+    """Constant of the isotropic part [1]. Default: 0.0066."""
+
+
+class NewtonianLaw(SceneModel):
+    """The viscosity does not depend on the shear rate."""
+
+    type: Literal["newtonian"] = "newtonian"
+    viscosity: Expression | None = None
+    """Dynamic viscosity at the start in x, y, z [Pa s], which particles then carry along; null: density times the
+    fluid's kinematic_viscosity. Default: null."""
+
+    largest: PositiveReal | None = None
+    """Cap of the dynamic viscosity [Pa s], which limits the step; needed beside viscosity. Default: null."""
+
+
+class HerschelBulkleyLaw(SceneModel):
+    """K s^(n-1) + tau_y (1 - exp(-m s)) / s at the shear rate s (Herschel & Bulkley 1926; Papanastasiou 1987):
+    a Bingham fluid with n = 1, a power law without yield stress."""
+
+    type: Literal["herschel_bulkley"] = "herschel_bulkley"
+    consistency: PositiveReal
+    """K [Pa s^n]."""
+
+    exponent: Annotated[Real, Field(gt=0.0, le=4.0)] = 1.0
+    """n [1]. Default: 1."""
+
+    yield_stress: NonNegativeReal = 0.0
+    """tau_y [Pa]. Default: 0."""
+
+    regularisation: PositiveReal = 1000.0
+    """m [s]. Default: 1000."""
+
+    largest: PositiveReal
+    """Cap of the dynamic viscosity [Pa s], which limits the step."""
+
+
+class CarreauLaw(SceneModel):
+    """mu_inf + (mu_0 - mu_inf) (1 + (lambda s)^2)^((n-1)/2) at the shear rate s (Carreau 1972)."""
+
+    type: Literal["carreau"] = "carreau"
+    zero_viscosity: PositiveReal
+    """mu_0 [Pa s]."""
+
+    infinite_viscosity: NonNegativeReal = 0.0
+    """mu_inf [Pa s]. Default: 0."""
+
+    time: PositiveReal
+    """lambda [s]."""
+
+    exponent: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.5
+    """n [1]. Default: 0.5."""
+
+    @property
+    def largest(self) -> float:
+        """Largest dynamic viscosity [Pa s]."""
+        return max(self.zero_viscosity, self.infinite_viscosity)
+
+
+class ViscousStress(SceneModel):
+    """The full viscous stress from the strain rate, with a viscosity that may vary in space or with the shear rate."""
+
+    type: Literal["viscous_stress"] = "viscous_stress"
+    law: Annotated[NewtonianLaw | HerschelBulkleyLaw | CarreauLaw, Field(discriminator="type")] = (
+        NewtonianLaw()
+    )
+    """What the viscosity depends on. Default: {type: newtonian}."""
+
+
+Viscosity = Annotated[
+    NoViscosity | ArtificialViscosity | LaminarViscosity | ViscousStress | SubParticleScale,
+    Field(discriminator="type"),
+]

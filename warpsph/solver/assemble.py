@@ -95,9 +95,11 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
         [len(s.position) for s in boundaries],
     )
     surface = make_wall_surface(arithmetic, flags, launcher.device)
-    fluid = FluidModel(assembly, lists, surface)
-    walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface) if layout.walls else None
-    return Parts(assembly, search, fluid, walls, *_reordered(assembly, search, walls))
+    fluid = FluidModel(assembly, lists, surface, scene)
+    walls = None
+    if layout.walls:
+        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, fluid.react)
+    return Parts(assembly, search, fluid, walls, *_reordered(assembly, search, fluid, walls))
 
 
 def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
@@ -142,13 +144,13 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
 
 
 def _reordered(
-    assembly: Assembly, search: NeighbourSearch, walls: WallModel | None
+    assembly: Assembly, search: NeighbourSearch, fluid: FluidModel, walls: WallModel | None
 ) -> tuple[tuple[Reordered, ...], tuple[Reordered, ...]]:
     def follow(array: wp.array, table: int, first: int) -> Reordered:
         return Reordered(assembly.launcher, array, search.tables[table], first)
 
     state = [array for _, array in arrays_of(assembly.state)]
-    fluid_arrays = tuple(follow(array, FLUID, 0) for array in state)
+    fluid_arrays = tuple(follow(array, FLUID, 0) for array in (*state, *fluid.own_arrays.values()))
     if walls is None:
         return fluid_arrays, ()
     records = [array for _, array in arrays_of(assembly.scratch)]

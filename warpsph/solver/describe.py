@@ -43,8 +43,8 @@ def _fields(parts: Parts) -> list[dict[str, Any]]:
 
 
 def _passes(parts: Parts) -> list[str]:
-    passes = ["choose step", "begin step", "accelerate", "kick and drift", "update density", "survey"]
-    walls = parts.walls
+    fluid, walls = parts.fluid.passes, parts.walls
+    passes = ["choose step", "begin step", *fluid, "survey"]
     if walls is None:
         return passes
     imposed = "wall pressure" if walls.method == "dynamic" else "extrapolate to walls"

@@ -247,6 +247,7 @@ class Simulation:
     def _evolving_arrays(self) -> Iterator[tuple[str, wp.array]]:
         yield from arrays_of(self._parts.assembly.state)
         yield "listed_position", self._parts.search.listed_position
+        yield from self._parts.fluid.own_arrays.items()
         if self._parts.walls:
             yield from self._parts.walls.own_arrays.items()
 

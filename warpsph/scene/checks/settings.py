@@ -5,11 +5,12 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from warpsph.scene.checks.common import no_such_axis, repeated_problems
+from warpsph.scene.checks.common import expression_problems, no_such_axis, repeated_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
 if TYPE_CHECKING:
+    from warpsph.scene.fluid_models import NewtonianLaw
     from warpsph.scene.schema import Scene
 
 MAX_FRAMES = 100_000
@@ -66,8 +67,36 @@ def _numerics_problems(scene: Scene) -> Iterator[Problem]:
             "expected_speed with sound_speed: auto, or sound_speed alone",
             numerics.expected_speed,
         )
-    if numerics.viscosity.type == "laminar":
-        for name, fluid in scene.fluids.items():
-            if fluid.kinematic_viscosity == 0.0:
-                key = f"fluids.{name}.kinematic_viscosity"
-                yield Problem.at(key, "laminar viscosity needs it", "a number greater than 0, m2/s")
+    yield from _viscosity_problems(scene)
+
+
+_NEED_VISCOSITY = ("laminar", "sub_particle_scale")
+
+
+def _viscosity_problems(scene: Scene) -> Iterator[Problem]:
+    viscosity = scene.numerics.viscosity
+    if viscosity.type == "viscous_stress" and viscosity.law.type == "newtonian":
+        yield from _newtonian_problems(scene, viscosity.law)
+    elif viscosity.type in _NEED_VISCOSITY:
+        yield from _missing_viscosity(scene, f"{viscosity.type} viscosity")
+
+
+def _newtonian_problems(scene: Scene, law: NewtonianLaw) -> Iterator[Problem]:
+    key = "numerics.viscosity.law"
+    if law.viscosity is not None:
+        yield from expression_problems(f"{key}.viscosity", law.viscosity, AXES[: scene.dimension])
+        if law.largest is None:
+            message = "a viscosity that varies needs a cap, which limits the step"
+            yield Problem.at(f"{key}.largest", message, "a number greater than 0, Pa s")
+    elif law.largest is not None:
+        message = "it has no effect without a viscosity that varies"
+        yield Problem.at(f"{key}.largest", message, "null", law.largest)
+    else:
+        yield from _missing_viscosity(scene, "a newtonian viscous_stress")
+
+
+def _missing_viscosity(scene: Scene, what: str) -> Iterator[Problem]:
+    for name, fluid in scene.fluids.items():
+        if fluid.kinematic_viscosity == 0.0:
+            key = f"fluids.{name}.kinematic_viscosity"
+            yield Problem.at(key, f"{what} needs it", "a number greater than 0, m2/s")
