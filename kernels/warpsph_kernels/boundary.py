@@ -169,7 +169,10 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
             v_wb = vector()
             if wp.static(options.wall_friction):
                 v_wb = friction[i][dim] * (unpack(friction[i]) - unpack(vV_b))
-            pair = wall_force(c, x_wb, v_wb, p_w, xp_b[dim])
+            u_wb = vector()
+            if wp.static(options.pressure_form == "riemann"):
+                u_wb = unpack(velocity_volume[first_wall + i]) - unpack(vV_b)
+            pair = wall_force(c, x_wb, v_wb, u_wb, p_w, xp_b[dim])
             if wp.static(options.has_barrier):
                 pair -= barrier(c, -x_wb, normal[i])
             total += vV_b[dim] * pair

@@ -73,7 +73,8 @@ class FluidKernels(NamedTuple):
 def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     """Return the device function `pair_force` of the particles a and b, divided by V_a V_b [N/m^(2 dim)].
 
-    It changes its sign when a and b are exchanged, which is what conserves momentum to rounding.
+    It changes its sign when a and b are exchanged, which is what conserves momentum to rounding. `v_ab` is the velocity
+    difference that viscosity sees, `u_ab` that which a pressure form sees; they differ at walls.
     """
     arithmetic = options.arithmetic
     real, vector = arithmetic.real, arithmetic.vector
@@ -82,10 +83,10 @@ def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     pressure_term = PRESSURE_FORMS[options.pressure_form](arithmetic)
     viscous_term = VISCOSITIES[options.viscosity](arithmetic)
 
-    def pair_force(c: constants_type, x_ab: vector, v_ab: vector, p_a: real, p_b: real):
+    def pair_force(c: constants_type, x_ab: vector, v_ab: vector, u_ab: vector, p_a: real, p_b: real):
         r2 = wp.dot(x_ab, x_ab)
         F = c.slope_norm * slope(wp.sqrt(r2) * c.inverse_h)
-        force = -pressure_term(p_a, p_b) * F * x_ab
+        force = -pressure_term(c, x_ab, u_ab, r2, p_a, p_b) * F * x_ab
         if wp.static(viscous):
             force += viscous_term(c, x_ab, v_ab, r2) * F
         return force
@@ -188,7 +189,8 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
             xp_b = position_pressure[b]
             vV_b = velocity_volume[b]
             x_ab = separation(x_a, unpack(xp_b), c.period)
-            total += vV_b[dim] * fluid_force(c, x_ab, v_a - unpack(vV_b), p_a, xp_b[dim])
+            v_ab = v_a - unpack(vV_b)
+            total += vV_b[dim] * fluid_force(c, x_ab, v_ab, v_ab, p_a, xp_b[dim])
         if wp.static(has_walls):
             for n in range(end, ends[i, 1]):
                 b = neighbours[i, n]
@@ -198,7 +200,10 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
                 if wp.static(options.wall_friction):
                     friction_b = friction[b - first_wall]
                     v_ab = friction_b[dim] * (v_a - unpack(friction_b))
-                force = wall_force(c, x_ab, v_ab, p_a, xp_b[dim])
+                u_ab = vector()
+                if wp.static(options.pressure_form == "riemann"):
+                    u_ab = v_a - unpack(velocity_volume[b])
+                force = wall_force(c, x_ab, v_ab, u_ab, p_a, xp_b[dim])
                 if wp.static(options.has_barrier):
                     force += barrier(c, x_ab, wall_normal[b - first_wall])
                 total += c.wall_volume * force
@@ -234,12 +239,14 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         ends: wp.array2d(dtype=wp.int32),
         position_density: wp.array(dtype=record),
         velocity_volume: wp.array(dtype=record),
+        density_gradient: wp.array(dtype=vector),
         density_rate: wp.array(dtype=real),
         density_deviation: wp.array(dtype=real),
     ):
         """One particle: drho_a/dt = rho_a sum_b V_b v_ab . grad_a W_ab + diffusion, then rho over half a step.
 
-        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010).
+        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010), who also take away the
+        mean of the pair's renormalised `density_gradient` [kg/m^(dim+1)].
         """
         i = offset + wp.tid()
         xd_a = position_density[i]
@@ -247,6 +254,9 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         v_a = unpack(velocity_volume[i])
         divergence = real(0.0)
         diffused = real(0.0)
+        gradient_a = vector()
+        if wp.static(options.density_diffusion == "delta_sph"):
+            gradient_a = density_gradient[i]
         end = ends[i, 0]
         for n in range(end):
             b = neighbours[i, n]
@@ -258,6 +268,8 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
             divergence += VF * wp.dot(v_a - unpack(vV_b), x_ab)
             if wp.static(options.density_diffusion != "none"):
                 diffused += VF * diffusion(c, x_ab, deviation_a, xd_b[dim])
+            if wp.static(options.density_diffusion == "delta_sph"):
+                diffused -= VF * wp.dot(gradient_a + density_gradient[b], x_ab)
         if wp.static(has_walls):
             for n in range(end, ends[i, 1]):
                 b = neighbours[i, n]

@@ -54,12 +54,33 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
 @cache
 def make_symmetric_pressure(arithmetic: Arithmetic) -> Any:
     """p_a + p_b (Colagrossi & Landrini 2003)."""
-    real = arithmetic.real
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
 
-    def symmetric_pressure(p_a: real, p_b: real):
+    def symmetric_pressure(c: constants_type, x_ab: vector, u_ab: vector, r2: real, p_a: real, p_b: real):
         return p_a + p_b
 
     return wp.func(symmetric_pressure)
+
+
+RIEMANN_LIMITER = 3.0
+
+
+@cache
+def make_riemann_pressure(arithmetic: Arithmetic) -> Any:
+    """2 p* = p_a + p_b + rho0 min(3 max(u, 0), c0) u, u = -v_ab . x_ab / r (Zhang, Hu & Adams 2017).
+
+    The linearised Riemann solver between a and b, whose dissipation the limiter takes away where particles part,
+    and keeps small where they come together slowly. Density and sound speed are those at rest.
+    """
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def riemann_pressure(c: constants_type, x_ab: vector, u_ab: vector, r2: real, p_a: real, p_b: real):
+        tiny = real(1.0e-12) * c.smoothing_length * c.smoothing_length
+        u = wp.max(-wp.dot(u_ab, x_ab) / wp.sqrt(wp.max(r2, tiny)), real(0.0))
+        beta = wp.min(real(wp.static(RIEMANN_LIMITER)) * u, c.sound_speed)
+        return p_a + p_b + c.rest_density * beta * u
+
+    return wp.func(riemann_pressure)
 
 
 @cache
@@ -165,7 +186,9 @@ def make_barrier(arithmetic: Arithmetic) -> Any:
     return wp.func(barrier)
 
 
-PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType({"symmetric": make_symmetric_pressure})
+PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType(
+    {"symmetric": make_symmetric_pressure, "riemann": make_riemann_pressure}
+)
 VISCOSITIES: dict[str, Factory] = {
     "none": make_no_viscosity,
     "artificial": make_artificial_viscosity,
@@ -173,5 +196,10 @@ VISCOSITIES: dict[str, Factory] = {
 }
 """By name; `warpsph.register_viscosity` adds to it."""
 DIFFUSIONS: Mapping[str, Factory] = MappingProxyType(
-    {"none": make_no_diffusion, "molteni_colagrossi": make_molteni_colagrossi, "fourtakas": make_fourtakas}
+    {
+        "none": make_no_diffusion,
+        "molteni_colagrossi": make_molteni_colagrossi,
+        "fourtakas": make_fourtakas,
+        "delta_sph": make_molteni_colagrossi,  # less the gradients, which the sum adds
+    }
 )

@@ -11,9 +11,9 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic
 
-SMALLEST_DETERMINANT = 0.05
-"""Below this determinant of the moment matrix (one inside of a fluid, about a half at a flat surface) a particle has
-too few neighbours on one side for its gradient to mean anything."""
+SMALLEST_EIGENVALUE = 0.2
+"""Geometric mean of the eigenvalues of a moment matrix (one inside of a fluid, about a half across a flat surface, a
+third in a corner) below which a particle has too few neighbours on one side for its gradient to mean anything."""
 
 
 @cache
@@ -27,7 +27,7 @@ def make_correction(arithmetic: Arithmetic) -> Any:
 
     def correction(moment: matrix):
         inverse = wp.identity(n=wp.static(dim), dtype=real)
-        if wp.determinant(moment) > real(wp.static(SMALLEST_DETERMINANT)):
+        if wp.determinant(moment) > real(wp.static(SMALLEST_EIGENVALUE**dim)):
             inverse = wp.inverse(moment)
         return inverse
 

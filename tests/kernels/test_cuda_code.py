@@ -7,6 +7,7 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.boundary import make_wall_kernels
 from warpsph_kernels.cells import make_cell_kernels
 from warpsph_kernels.clock import make_clock_kernels
+from warpsph_kernels.density_gradient import make_density_gradient
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.stress import make_stress_kernels
 from warpsph_kernels.wall_motion import make_move
@@ -26,8 +27,8 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
         periodic=periodic,
         smoothing="wendland_c2",
         state="tait",
-        pressure_form="symmetric",
-        density_diffusion="fourtakas",
+        pressure_form="symmetric" if dimension == 3 else "riemann",
+        density_diffusion="delta_sph",
         viscosity="artificial",
         wall=wall,
         wall_suction=False,
@@ -39,9 +40,11 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     make_move(options)
     make_surface_kernels(options)
     make_stress_kernels(options)
+    make_density_gradient(options)
     cells = make_cell_kernels(arithmetic, periodic).module
     clock = make_clock_kernels(arithmetic, options.state).module
-    modules = (options.module, options.module_of("stress"), cells, clock, reorder.MODULE)
+    extra = [options.module_of(concept) for concept in ("stress", "density_gradient")]
+    modules = (options.module, *extra, cells, clock, reorder.MODULE)
     for name in modules:
         wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
     assert len(list(tmp_path.glob("*.ptx"))) == len(modules)

@@ -13,6 +13,7 @@ from warpsph_kernels.state import parameters_type
 
 from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
+from warpsph.physics.density_gradient import DensityGradient
 from warpsph.physics.material import largest_kinematic_viscosity, material, padded, smoothing_length
 from warpsph.physics.stress import StressModel
 from warpsph.scene.schema import Scene
@@ -107,6 +108,10 @@ class FluidModel:
         kernels = make_fluid_kernels(assembly.options)
         launcher, c, clock, origin = assembly.launcher, assembly.constants, assembly.clock, assembly.origin
         state, scratch = assembly.state, assembly.scratch
+        self._density_gradient = (
+            DensityGradient(assembly, lists) if assembly.options.density_diffusion == "delta_sph" else None
+        )
+        self._no_vectors = wp.zeros(1, dtype=assembly.options.arithmetic.vector, device=launcher.device)
         self._begin = launcher.bind(
             "begin step",
             kernels.begin_step,
@@ -154,8 +159,10 @@ class FluidModel:
     def bind_lists(self) -> None:
         """Build the passes that read neighbour lists; needed again when the rows have grown."""
         a, rows = self._assembly, self._lists.fluid
-        if self._stress:
-            self._stress.bind_lists()
+        for part in (self._stress, self._density_gradient):
+            if part:
+                part.bind_lists()
+        gradient = self._density_gradient.gradient if self._density_gradient else self._no_vectors
         self._accelerate = a.launcher.bind(
             "accelerate",
             self._kernels.accelerate,
@@ -178,6 +185,7 @@ class FluidModel:
             rows.ends,
             a.scratch.position_density,
             a.state.velocity_volume,
+            gradient,
             a.state.density_rate,
             a.state.density_deviation,
         )
@@ -186,7 +194,8 @@ class FluidModel:
     def passes(self) -> list[str]:
         """Names of the passes from the forces to the density, in the order of a step."""
         stress = ["stress"] if self._stress else []
-        return [*stress, "accelerate", "kick and drift", "update density"]
+        gradient = ["density gradient"] if self._density_gradient else []
+        return [*stress, "accelerate", "kick and drift", *gradient, "update density"]
 
     @property
     def count(self) -> int:
@@ -210,6 +219,8 @@ class FluidModel:
 
     def update_density(self) -> None:
         """Sum the density rate and advance the density over the second half of the step."""
+        if self._density_gradient:
+            self._density_gradient.find()
         self._update_density.run(self.count)
 
     def react(self, force: wp.array) -> None:

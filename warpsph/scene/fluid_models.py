@@ -69,8 +69,17 @@ class FourtakasDiffusion(SceneModel):
     """Diffusion coefficient [1]. Default: 0.1."""
 
 
+class DeltaSPHDiffusion(SceneModel):
+    """The same without the renormalised density gradient (delta-SPH), after Antuono et al. (2010)."""
+
+    type: Literal["delta_sph"] = "delta_sph"
+    delta: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.1
+    """Diffusion coefficient [1]. Default: 0.1."""
+
+
 DensityDiffusion = Annotated[
-    NoDensityDiffusion | MolteniColagrossiDiffusion | FourtakasDiffusion, Field(discriminator="type")
+    NoDensityDiffusion | MolteniColagrossiDiffusion | FourtakasDiffusion | DeltaSPHDiffusion,
+    Field(discriminator="type"),
 ]
 
 

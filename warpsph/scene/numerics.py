@@ -58,8 +58,9 @@ class Numerics(SceneModel):
     state: State = Tait()
     """Equation of state. Default: {type: tait, gamma: 7}."""
 
-    pressure_form: Literal["symmetric"] = "symmetric"
-    """Form of the pressure force. Default: symmetric."""
+    pressure_form: Literal["symmetric", "riemann"] = "symmetric"
+    """Form of the pressure force; riemann: with the dissipation of a Riemann solver and its limiter, after Zhang, Hu &
+    Adams (2017), in place of an artificial viscosity. Default: symmetric."""
 
     density_diffusion: DensityDiffusion = FourtakasDiffusion()
     """Diffusion in the continuity equation. Default: {type: fourtakas, delta: 0.1}."""

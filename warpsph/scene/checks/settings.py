@@ -67,6 +67,9 @@ def _numerics_problems(scene: Scene) -> Iterator[Problem]:
             "expected_speed with sound_speed: auto, or sound_speed alone",
             numerics.expected_speed,
         )
+    if numerics.pressure_form == "riemann" and numerics.viscosity.type == "artificial":
+        message = "the Riemann solver of pressure_form: riemann takes the place of an artificial viscosity"
+        yield Problem.at("numerics.viscosity.type", message, "any other viscosity, or none", "artificial")
     yield from _viscosity_problems(scene)
 
 
