@@ -84,6 +84,7 @@ UNIONS = (
     ("Density diffusion", "`numerics.density_diffusion`", ("Numerics", "density_diffusion")),
     ("Viscosity", "`numerics.viscosity`", ("Numerics", "viscosity")),
     ("Viscosity laws", "`law` of a viscous stress", ("ViscousStress", "law")),
+    ("Particle order", "`numerics.particle_order`", ("Numerics", "particle_order")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
     ("Initial pressure", "`pressure` of fluids", ("Fluid", "pressure")),
     ("Probes", "each value of `probes`", None),

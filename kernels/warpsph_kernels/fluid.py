@@ -42,6 +42,10 @@ class FluidOptions:
     """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
     stress: str = "none"
     """What the viscous stress tensor is made of: none, a law of `warpsph_kernels.rheology`, or sub_particle_scale."""
+    particle_order: str = "none"
+    """What spreads the particles evenly: none, transport_velocity or shifting."""
+    density: str = "continuity"
+    """Where the density comes from: continuity, summation or mixed."""
 
     @property
     def has_barrier(self) -> bool:
@@ -112,6 +116,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     fluid_force = make_pair_force(options, has_viscosity)
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     has_walls = options.wall != "none"
+    shifts = options.particle_order != "none"
     barrier = make_barrier(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
@@ -121,16 +126,22 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         clock: wp.array(dtype=wp.float64),
         origin: point,
         density_rate: wp.array(dtype=real),
+        shift: wp.array(dtype=vector),
         position: wp.array(dtype=point),
         density_deviation: wp.array(dtype=real),
         velocity_volume: wp.array(dtype=record),
         position_pressure: wp.array(dtype=record),
     ):
-        """One particle: drift and update the density over half a step, then the pressure and the volume."""
+        """One particle: drift and update the density over half a step, then the pressure and the volume.
+
+        `shift` [m/s] is what the particle's own velocity has beside that of the flow.
+        """
         i = offset + wp.tid()
         half_step = wp.float64(0.5) * clock[0]
         v = unpack(velocity_volume[i])
         x = position[i] + half_step * widen(v)
+        if wp.static(shifts):
+            x += half_step * widen(shift[i])
         deviation = density_deviation[i] + real(half_step) * density_rate[i]
         position[i] = x
         density_deviation[i] = deviation
@@ -216,16 +227,22 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         origin: point,
         acceleration: wp.array(dtype=vector),
         density_deviation: wp.array(dtype=real),
+        next_shift: wp.array(dtype=vector),
+        shift: wp.array(dtype=vector),
         position: wp.array(dtype=point),
         velocity_volume: wp.array(dtype=record),
         position_density: wp.array(dtype=record),
     ):
-        """One particle: velocity over the whole step, position over its second half."""
+        """One particle: velocity over the whole step, position over its second half, with a new shift velocity."""
         i = offset + wp.tid()
         step = clock[0]
         vV = velocity_volume[i]
         v = unpack(vV) + real(step) * acceleration[i]
         x = position[i] + wp.float64(0.5) * step * widen(v)
+        if wp.static(shifts):
+            dv = next_shift[i]
+            shift[i] = dv
+            x += wp.float64(0.5) * step * widen(dv)
         position[i] = x
         velocity_volume[i] = pack(v, vV[dim])
         position_density[i] = pack(narrow(x, origin), density_deviation[i])

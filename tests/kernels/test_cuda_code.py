@@ -9,11 +9,14 @@ from warpsph_kernels.cells import make_cell_kernels
 from warpsph_kernels.clock import make_clock_kernels
 from warpsph_kernels.density_gradient import make_density_gradient
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.particle_order import make_order_kernels
 from warpsph_kernels.stress import make_stress_kernels
+from warpsph_kernels.summation import make_sum_density
 from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
 SM_80 = 80
+CONCEPTS = ("stress", "density_gradient", "order", "summation")
 
 
 @pytest.mark.parametrize(
@@ -33,6 +36,8 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
         wall=wall,
         wall_suction=False,
         wall_friction=True,
+        particle_order="transport_velocity" if dimension == 2 else "shifting",
+        density="mixed",
         stress="carreau" if dimension == 2 else "sub_particle_scale",
     )
     make_fluid_kernels(options)
@@ -41,9 +46,11 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     make_surface_kernels(options)
     make_stress_kernels(options)
     make_density_gradient(options)
+    make_order_kernels(options)
+    make_sum_density(options)
     cells = make_cell_kernels(arithmetic, periodic).module
     clock = make_clock_kernels(arithmetic, options.state).module
-    extra = [options.module_of(concept) for concept in ("stress", "density_gradient")]
+    extra = [options.module_of(concept) for concept in CONCEPTS]
     modules = (options.module, *extra, cells, clock, reorder.MODULE)
     for name in modules:
         wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)

@@ -19,6 +19,11 @@ class DensityGradient:
         )
         self.bind_lists()
 
+    @property
+    def arrays(self) -> dict[str, wp.array]:
+        """All arrays of the model, by name."""
+        return {"density_gradient": self.gradient}
+
     def bind_lists(self) -> None:
         """Build the pass; needed again when the rows of the neighbour lists have grown."""
         a, rows = self._assembly, self._lists.fluid

@@ -15,7 +15,9 @@ from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.physics.density_gradient import DensityGradient
 from warpsph.physics.material import largest_kinematic_viscosity, material, padded, smoothing_length
+from warpsph.physics.particle_order import ParticleOrderModel
 from warpsph.physics.stress import StressModel
+from warpsph.physics.summation import DensitySum
 from warpsph.scene.schema import Scene
 
 BARRIER_REACH = 0.75
@@ -38,6 +40,8 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
         density_diffusion=numerics.density_diffusion.type,
         viscosity=_pair_viscosity(scene),
         stress=_stress(scene),
+        particle_order=numerics.particle_order.type,
+        density=numerics.density,
         wall=numerics.wall.type if has_walls else "none",
         wall_suction=getattr(numerics.wall, "suction", True),
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
@@ -98,71 +102,153 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
 
 
 class FluidModel:
-    """The passes of the fluid. `count` particles are alive."""
+    """The passes of the fluid, and of what only some scenes have beside them. `count` particles are alive."""
 
     def __init__(self, assembly: Assembly, lists: Lists, surface: WallSurface, scene: Scene) -> None:
-        self._lists = lists
-        self._stress = (
-            StressModel(assembly, lists, surface, scene) if assembly.options.stress != "none" else None
-        )
-        kernels = make_fluid_kernels(assembly.options)
-        launcher, c, clock, origin = assembly.launcher, assembly.constants, assembly.clock, assembly.origin
-        state, scratch = assembly.state, assembly.scratch
-        self._density_gradient = (
-            DensityGradient(assembly, lists) if assembly.options.density_diffusion == "delta_sph" else None
-        )
-        self._no_vectors = wp.zeros(1, dtype=assembly.options.arithmetic.vector, device=launcher.device)
-        self._begin = launcher.bind(
-            "begin step",
-            kernels.begin_step,
-            c,
-            clock,
-            origin,
-            state.density_rate,
-            state.position,
-            state.density_deviation,
-            state.velocity_volume,
-            scratch.position_pressure,
-        )
-        self._synchronise = launcher.bind(
-            "synchronise",
-            kernels.synchronise,
-            c,
-            origin,
-            state.position,
-            state.density_deviation,
-            state.velocity_volume,
-            scratch.position_pressure,
-            scratch.position_density,
-        )
-        self._kick = launcher.bind(
-            "kick and drift",
-            kernels.kick_and_drift,
-            clock,
-            origin,
-            state.acceleration,
-            state.density_deviation,
-            state.position,
-            state.velocity_volume,
-            scratch.position_density,
-        )
-        self._assembly = assembly
-        self._surface = surface
-        self._kernels = kernels
-        self.bind_lists()
+        options, numerics = assembly.options, scene.numerics
+        self._assembly, self._lists, self._surface = assembly, lists, surface
+        self._stress: StressModel | None = None
+        self._order: ParticleOrderModel | None = None
+        self._density_gradient: DensityGradient | None = None
+        self._density_sum: DensitySum | None = None
+        if options.stress != "none":
+            self._stress = StressModel(assembly, lists, surface, scene)
+        if options.particle_order != "none":
+            self._order = ParticleOrderModel(assembly, lists, numerics.particle_order, scene.spacing)
+        if options.density_diffusion == "delta_sph":
+            self._density_gradient = DensityGradient(assembly, lists)
+        if options.density != "continuity":
+            self._density_sum = DensitySum(assembly, lists, scene)
+        self._kernels = make_fluid_kernels(options)
+        self._none = wp.zeros(1, dtype=options.arithmetic.vector, device=assembly.launcher.device)
+        self._bind_points()
+        self._bind_sums()
 
     @property
     def own_arrays(self) -> dict[str, wp.array]:
         """Arrays of shape (fluids,) that follow the order of the fluid and belong into a checkpoint."""
-        return self._stress.own_arrays if self._stress else {}
+        parts = [part.own_arrays for part in (self._stress, self._order) if part]
+        return {name: array for arrays in parts for name, array in arrays.items()}
+
+    @property
+    def arrays(self) -> dict[str, wp.array]:
+        """Arrays that only some scenes have, by name."""
+        parts = [part.arrays for part in (self._stress, self._order, self._density_gradient) if part]
+        return {name: array for arrays in parts for name, array in arrays.items()}
+
+    @property
+    def passes(self) -> list[str]:
+        """Names of the passes from the forces to the density, in the order of a step."""
+        summed = ["sum density"] if self._density_sum else []
+        stress = ["stress"] if self._stress else []
+        order = self._order.passes if self._order else []
+        gradient = ["density gradient"] if self._density_gradient else []
+        rate = ["update density"] if self._has_rate else []
+        return [*summed, *stress, "accelerate", *order, "kick and drift", *gradient, *rate]
+
+    @property
+    def count(self) -> int:
+        return self._lists.fluid.targets.count
+
+    @property
+    def largest_shift(self) -> float:
+        """Largest distance [m] that a particle may leave the flow by in a step."""
+        return self._order.largest_shift if self._order else 0.0
 
     def bind_lists(self) -> None:
         """Build the passes that read neighbour lists; needed again when the rows have grown."""
-        a, rows = self._assembly, self._lists.fluid
-        for part in (self._stress, self._density_gradient):
+        for part in (self._stress, self._order, self._density_gradient, self._density_sum):
             if part:
                 part.bind_lists()
-        gradient = self._density_gradient.gradient if self._density_gradient else self._no_vectors
+        self._bind_sums()
+
+    def begin_step(self) -> None:
+        """Drift and update the density over half a step."""
+        self._begin.run(self.count)
+        if self._density_sum:
+            self._density_sum.find()
+            self._synchronise.run(self.count)
+
+    def accelerate(self) -> None:
+        """Sum the forces."""
+        if self._stress:
+            self._stress.find()
+        self._accelerate.run(self.count)
+        if self._stress:
+            self._stress.add()
+        if self._order:
+            self._order.find()
+
+    def kick_and_drift(self) -> None:
+        """Advance the velocity over the step and the position over its second half."""
+        self._kick.run(self.count)
+
+    def update_density(self) -> None:
+        """Sum the density rate and advance the density over the second half of the step."""
+        if self._density_gradient:
+            self._density_gradient.find()
+        if self._has_rate:
+            self._update_density.run(self.count)
+
+    def react(self, force: wp.array) -> None:
+        """Add what beside pair forces acts on each wall particle [N], shape (walls,)."""
+        if self._stress:
+            self._stress.react(force)
+
+    def synchronise(self) -> None:
+        """Bring pressure and volume to the time of position and density."""
+        self._synchronise.run(self.count)
+
+    @property
+    def _has_rate(self) -> bool:
+        return self._assembly.options.density != "summation"
+
+    def _bind_points(self) -> None:
+        a, bind = self._assembly, self._assembly.launcher.bind
+        state, scratch = a.state, a.scratch
+        shift = self._order.shift if self._order else self._none
+        next_shift = self._order.next_shift if self._order else self._none
+        self._begin = bind(
+            "begin step",
+            self._kernels.begin_step,
+            a.constants,
+            a.clock,
+            a.origin,
+            state.density_rate,
+            shift,
+            state.position,
+            state.density_deviation,
+            state.velocity_volume,
+            scratch.position_pressure,
+        )
+        self._synchronise = bind(
+            "synchronise",
+            self._kernels.synchronise,
+            a.constants,
+            a.origin,
+            state.position,
+            state.density_deviation,
+            state.velocity_volume,
+            scratch.position_pressure,
+            scratch.position_density,
+        )
+        self._kick = bind(
+            "kick and drift",
+            self._kernels.kick_and_drift,
+            a.clock,
+            a.origin,
+            state.acceleration,
+            state.density_deviation,
+            next_shift,
+            shift,
+            state.position,
+            state.velocity_volume,
+            scratch.position_density,
+        )
+
+    def _bind_sums(self) -> None:
+        a, rows = self._assembly, self._lists.fluid
+        gradient = self._density_gradient.gradient if self._density_gradient else self._none
         self._accelerate = a.launcher.bind(
             "accelerate",
             self._kernels.accelerate,
@@ -189,45 +275,3 @@ class FluidModel:
             a.state.density_rate,
             a.state.density_deviation,
         )
-
-    @property
-    def passes(self) -> list[str]:
-        """Names of the passes from the forces to the density, in the order of a step."""
-        stress = ["stress"] if self._stress else []
-        gradient = ["density gradient"] if self._density_gradient else []
-        return [*stress, "accelerate", "kick and drift", *gradient, "update density"]
-
-    @property
-    def count(self) -> int:
-        return self._lists.fluid.targets.count
-
-    def begin_step(self) -> None:
-        """Drift and update the density over half a step."""
-        self._begin.run(self.count)
-
-    def accelerate(self) -> None:
-        """Sum the forces."""
-        if self._stress:
-            self._stress.find()
-        self._accelerate.run(self.count)
-        if self._stress:
-            self._stress.add()
-
-    def kick_and_drift(self) -> None:
-        """Advance the velocity over the step and the position over its second half."""
-        self._kick.run(self.count)
-
-    def update_density(self) -> None:
-        """Sum the density rate and advance the density over the second half of the step."""
-        if self._density_gradient:
-            self._density_gradient.find()
-        self._update_density.run(self.count)
-
-    def react(self, force: wp.array) -> None:
-        """Add what beside pair forces acts on each wall particle [N], shape (walls,)."""
-        if self._stress:
-            self._stress.react(force)
-
-    def synchronise(self) -> None:
-        """Bring pressure and volume to the time of position and density."""
-        self._synchronise.run(self.count)

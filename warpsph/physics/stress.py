@@ -72,6 +72,11 @@ class StressModel:
         """Arrays of shape (fluids,) that follow the order of the fluid and belong into a checkpoint."""
         return {"carried_viscosity": self.carried} if len(self.carried) == len(self.stress) else {}
 
+    @property
+    def arrays(self) -> dict[str, wp.array]:
+        """All arrays of the model, by name."""
+        return {"carried_viscosity": self.carried, "viscosity": self.viscosity, "stress": self.stress}
+
     def bind_lists(self) -> None:
         """Build the passes; needed again when the rows of the neighbour lists have grown."""
         a, rows, kernels = self._assembly, self._lists.fluid, self._kernels

@@ -1,4 +1,4 @@
-"""Models of the fluid that a scene chooses by `type`: state, density diffusion, viscosity."""
+"""Models of the fluid that a scene chooses by `type`: state, density diffusion, viscosity, particle order."""
 
 from __future__ import annotations
 
@@ -183,3 +183,45 @@ Viscosity = Annotated[
     NoViscosity | ArtificialViscosity | LaminarViscosity | ViscousStress | SubParticleScale,
     Field(discriminator="type"),
 ]
+
+
+class NoParticleOrder(SceneModel):
+    """Particles move with the flow."""
+
+    type: Literal["none"] = "none"
+
+    @property
+    def strength(self) -> float:
+        """No shift [1]."""
+        return 0.0
+
+
+class TransportVelocity(SceneModel):
+    """Particles move with a transport velocity that a background pressure keeps even, after Adami, Hu & Adams (2013):
+    for flows that fill their space, without a free surface."""
+
+    type: Literal["transport_velocity"] = "transport_velocity"
+    background: Annotated[Real, Field(gt=0.0, le=10.0)] = 1.0
+    """Background pressure in units of density * sound_speed^2 [1]. Default: 1."""
+
+    @property
+    def strength(self) -> float:
+        """Background pressure in units of rho0 c0^2 [1]."""
+        return self.background
+
+
+class Shifting(SceneModel):
+    """Particles are shifted towards even distances (Lind et al. 2012; Skillen et al. 2013), along a free surface but
+    not across it (Marrone et al. 2010; Sun et al. 2017)."""
+
+    type: Literal["shifting"] = "shifting"
+    coefficient: Annotated[Real, Field(gt=0.0, le=10.0)] = 2.0
+    """Shift velocity over h |v| |grad C| [1]. Default: 2."""
+
+    @property
+    def strength(self) -> float:
+        """Shift velocity over h |v| |grad C| [1]."""
+        return self.coefficient
+
+
+ParticleOrder = Annotated[NoParticleOrder | TransportVelocity | Shifting, Field(discriminator="type")]

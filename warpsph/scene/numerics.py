@@ -11,6 +11,8 @@ from warpsph.scene.fluid_models import (
     ArtificialViscosity,
     DensityDiffusion,
     FourtakasDiffusion,
+    NoParticleOrder,
+    ParticleOrder,
     State,
     Tait,
     Viscosity,
@@ -62,11 +64,19 @@ class Numerics(SceneModel):
     """Form of the pressure force; riemann: with the dissipation of a Riemann solver and its limiter, after Zhang, Hu &
     Adams (2017), in place of an artificial viscosity. Default: symmetric."""
 
+    density: Literal["continuity", "summation", "mixed"] = "continuity"
+    """Where the density comes from: the continuity equation; a sum over the neighbours, for fluid that fills its space
+    and begins at rest density; or the sum inside and the continuity equation near a free surface.
+    Default: continuity."""
+
     density_diffusion: DensityDiffusion = FourtakasDiffusion()
     """Diffusion in the continuity equation. Default: {type: fourtakas, delta: 0.1}."""
 
     viscosity: Viscosity = ArtificialViscosity()
     """Viscous force. Default: {type: artificial, alpha: 0.02}."""
+
+    particle_order: ParticleOrder = NoParticleOrder()
+    """What keeps the particles evenly spread. Default: {type: none}."""
 
     wall: WallMethod = ExtrapolatedWall()
     """How walls act on the fluid. Default: {type: extrapolated}."""

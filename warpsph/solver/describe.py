@@ -38,7 +38,8 @@ def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -
 
 
 def _fields(parts: Parts) -> list[dict[str, Any]]:
-    groups = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
+    shared = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
+    groups = (*shared, *parts.fluid.arrays.items())
     return [{"name": name, "unit": UNITS[name], "bytes": int(array.capacity)} for name, array in groups]
 
 

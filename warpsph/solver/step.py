@@ -124,7 +124,8 @@ class Stepper:
     def lists_expire(self, dt: float) -> bool:
         """Tell whether a particle may outrun the neighbour lists within the step."""
         reach = self._read(clock_kernels.SPEED) + self._read(clock_kernels.ACCELERATION) * dt
-        return self._search.must_rebuild(self._read(clock_kernels.DISPLACEMENT), reach, dt)
+        displacement = self._read(clock_kernels.DISPLACEMENT) + self._fluid.largest_shift
+        return self._search.must_rebuild(displacement, reach, dt)
 
     def renew_lists(self) -> None:
         """Sort the particles and list their neighbours anew."""
