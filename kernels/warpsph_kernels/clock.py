@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_packing
-from warpsph_kernels.state import STATES, parameters_type
+from warpsph_kernels.state import STATES
 
 BLOCK = 256
 """Particles a thread of `survey` reads."""
@@ -26,7 +26,7 @@ ACOUSTIC, FORCE, VISCOUS, MAX_STEP, FRAME = range(5)
 
 
 _DOUBLE = {dimension: Arithmetic(dimension, "double") for dimension in (2, 3)}
-STATE_PARAMETERS = parameters_type(_DOUBLE[2])
+STATE_PARAMETERS = _DOUBLE[2].parameters
 """Type of the parameters of the state, which the step choice takes in double precision."""
 
 

@@ -12,7 +12,6 @@ from typing import Any
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.state import parameters_type
 
 Factory = Callable[[Arithmetic], Any]
 
@@ -45,7 +44,7 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "barrier",
         "inverse_barrier_reach",
     )
-    parameters = dict.fromkeys(("state_parameters", "viscosity_parameters"), parameters_type(arithmetic))
+    parameters = dict.fromkeys(("state_parameters", "viscosity_parameters"), arithmetic.parameters)
     vectors = {"gravity": vector, "period": vector}
     FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | vectors | parameters
     return wp.struct(FluidConstants)

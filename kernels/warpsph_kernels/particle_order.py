@@ -11,6 +11,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
+from warpsph_kernels.clock import SPEED
 from warpsph_kernels.fluid import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
@@ -94,8 +95,8 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         """One particle: the momentum that dv carries, and the next dv.
 
         transport_velocity: dv = -2 dt p_b / rho grad C with the background pressure p_b = `strength` rho0 c0^2 (Adami,
-        Hu & Adams 2013, eq. 13); shifting: dv = -`strength` h |v| grad C (Skillen et al. 2013), and the smallest
-        eigenvalue of the moment matrix as `coverage`, about one inside.
+        Hu & Adams 2013); shifting: dv = -`strength` h v grad C with the largest speed v of all (Sun et al. 2017), and
+        the smallest eigenvalue of the moment matrix as `coverage`, about one inside.
         """
         i = offset + wp.tid()
         x_a, vV_a = unpack(position_pressure[i]), velocity_volume[i]
@@ -124,7 +125,9 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         dt = real(clock[0])
         if wp.static(finds_surface):
             coverage[i] = smallest_eigenvalue(moment)
-            next_shift[i] = bounded(c, -strength * c.smoothing_length * wp.length(v_a) * concentration, dt)
+            next_shift[i] = bounded(
+                c, -strength * c.smoothing_length * real(clock[wp.static(SPEED)]) * concentration, dt
+            )
         else:
             push = real(2.0) * dt * strength * c.sound_speed * c.sound_speed
             next_shift[i] = bounded(c, -push * concentration, dt)

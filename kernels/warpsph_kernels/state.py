@@ -13,14 +13,6 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic
 
-PARAMETERS = 4
-"""Numbers that a formula may take from the scene, in a vector whose unused entries are zero."""
-
-
-def parameters_type(arithmetic: Arithmetic) -> Any:
-    """Return the type of the vector of a formula's parameters."""
-    return wp.types.vector(PARAMETERS, arithmetic.real)
-
 
 @dataclass(frozen=True)
 class EquationOfState:
@@ -41,7 +33,7 @@ def make_tait(arithmetic: Arithmetic) -> Any:
     With e = rho/rho0 - 1 the bracket is gamma e (1 + (gamma-1)/2 e (1 + (gamma-2)/3 e (...))), which has no
     cancellation. Seven factors are the whole binomial of gamma = 7; what is left for another gamma is of order e^8.
     """
-    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+    real, parameters_vector = arithmetic.real, arithmetic.parameters
 
     def tait(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
         gamma = parameters[0]
@@ -58,7 +50,7 @@ def make_tait(arithmetic: Arithmetic) -> Any:
 @cache
 def make_tait_stiffening(arithmetic: Arithmetic) -> Any:
     """(rho/rho0)^(gamma - 1)."""
-    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+    real, parameters_vector = arithmetic.real, arithmetic.parameters
 
     def tait_stiffening(
         deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector
@@ -71,7 +63,7 @@ def make_tait_stiffening(arithmetic: Arithmetic) -> Any:
 @cache
 def make_linear(arithmetic: Arithmetic) -> Any:
     """Linear: p = c0^2 (rho - rho0)."""
-    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+    real, parameters_vector = arithmetic.real, arithmetic.parameters
 
     def linear(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
         return sound_speed * sound_speed * deviation
@@ -82,12 +74,34 @@ def make_linear(arithmetic: Arithmetic) -> Any:
 @cache
 def make_no_stiffening(arithmetic: Arithmetic) -> Any:
     """The sound speed is the same at every density."""
-    real, parameters_vector = arithmetic.real, parameters_type(arithmetic)
+    real, parameters_vector = arithmetic.real, arithmetic.parameters
 
     def no_stiffening(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
         return real(1.0)
 
     return wp.func(no_stiffening)
+
+
+STRAIN_STEP = 1.0e-4
+
+
+def difference_stiffening(make: Callable[[Arithmetic], Any]) -> Callable[[Arithmetic], Any]:
+    """Return the factory of a stiffening that is the central difference of a state, over 2e-4 of the density."""
+
+    @cache
+    def make_stiffening(arithmetic: Arithmetic) -> Any:
+        real, parameters_vector = arithmetic.real, arithmetic.parameters
+        state = make(arithmetic)
+
+        def stiffening(deviation: real, rest_density: real, sound_speed: real, parameters: parameters_vector):
+            step = real(wp.static(STRAIN_STEP)) * rest_density
+            above = state(deviation + step, rest_density, sound_speed, parameters)
+            below = state(deviation - step, rest_density, sound_speed, parameters)
+            return (above - below) / (real(2.0) * step * sound_speed * sound_speed)
+
+        return wp.func(stiffening)
+
+    return make_stiffening
 
 
 STATES: dict[str, EquationOfState] = {

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.state import STATES, parameters_type
+from warpsph_kernels.state import STATES
 
 DENSITY, SOUND_SPEED = 1000.0, 40.0
 
@@ -12,7 +12,7 @@ DENSITY, SOUND_SPEED = 1000.0, 40.0
 def evaluated(make, deviation: np.ndarray, precision: str, *numbers: float) -> np.ndarray:
     """A device function of a state at density deviations."""
     arithmetic = Arithmetic(2, precision)
-    real, parameters = arithmetic.real, parameters_type(arithmetic)
+    real, parameters = arithmetic.real, arithmetic.parameters
     function = make(arithmetic)
 
     @wp.kernel(module="unique", enable_backward=False)

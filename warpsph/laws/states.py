@@ -78,3 +78,5 @@ STATE_LAWS: dict[str, StateLaw] = {
     "linear": StateLaw((), linear_strain, linear_work),
 }
 """By name; `warpsph.register_state` adds to it."""
+
+BUILT_IN_STATES = frozenset(STATE_LAWS)

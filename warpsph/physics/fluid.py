@@ -9,8 +9,8 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
-from warpsph_kernels.state import parameters_type
 
+from warpsph.laws.viscosities import VISCOSITY_LAWS
 from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.physics.density_gradient import DensityGradient
@@ -50,8 +50,11 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
 
 def _pair_viscosity(scene: Scene) -> str:
     """Return the viscosity that acts pair by pair; a stress does not."""
-    name = scene.numerics.viscosity.type
-    return {"viscous_stress": "none", "sub_particle_scale": "laminar"}.get(name, name)
+    viscosity = scene.numerics.viscosity
+    if viscosity.type == "custom":
+        return viscosity.law
+    others = {"viscous_stress": "none", "sub_particle_scale": "laminar"}
+    return others.get(viscosity.type, viscosity.type)
 
 
 def _stress(scene: Scene) -> str:
@@ -74,7 +77,9 @@ def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sou
     c.norm, c.slope_norm = norm, norm / h**2
     c.mass, c.wall_volume = fluid.density * volume, volume
     c.rest_density, c.sound_speed = fluid.density, sound_speed
-    c.state_parameters = parameters_type(arithmetic)(*padded(numerics.state.numbers))
+    c.state_parameters = arithmetic.parameters(*padded(numerics.state.numbers))
+    if numerics.viscosity.type == "custom":
+        c.viscosity_parameters = arithmetic.parameters(*padded(numerics.viscosity.numbers))
     c.artificial_viscosity = getattr(numerics.viscosity, "alpha", 0.0) * h * sound_speed * fluid.density
     c.dynamic_viscosity = fluid.density * fluid.kinematic_viscosity
     c.diffusion = getattr(numerics.density_diffusion, "delta", 0.0) * h * sound_speed
@@ -98,7 +103,11 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
         return (
             viscosity.alpha * smoothing_length(scene) * sound_speed / (8.0 if scene.dimension == 2 else 10.0)
         )
-    return largest_kinematic_viscosity(scene)
+    largest = largest_kinematic_viscosity(scene)
+    if viscosity.type == "custom":
+        law = VISCOSITY_LAWS[viscosity.law]
+        return law.step_viscosity(largest, smoothing_length(scene), sound_speed, *viscosity.numbers)
+    return largest
 
 
 class FluidModel:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from warpsph_kernels.state import PARAMETERS
+from warpsph_kernels.arithmetic import PARAMETERS
 
 from warpsph.scene.schema import Fluid, Scene
 

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field
 
+from warpsph.laws.states import STATE_LAWS
+from warpsph.laws.viscosities import VISCOSITY_LAWS
 from warpsph.scene.expressions import Expression
 from warpsph.scene.types import NonNegativeReal, PositiveReal, Real, SceneModel
 
@@ -44,7 +47,23 @@ class LinearState(SceneModel):
         return ()
 
 
-State = Annotated[Tait | LinearState, Field(discriminator="type")]
+class CustomState(SceneModel):
+    """A state that a program has added with `warpsph.register_state`."""
+
+    type: Literal["custom"] = "custom"
+    law: str
+    """Name of the state, as it was registered."""
+
+    parameters: Mapping[str, Real] = {}
+    """Its parameters by name, all of them. Default: none."""
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Parameters of the formula, in its order."""
+        return tuple(self.parameters[name] for name in STATE_LAWS[self.law].parameters)
+
+
+State = Annotated[Tait | LinearState | CustomState, Field(discriminator="type")]
 
 
 class NoDensityDiffusion(SceneModel):
@@ -179,8 +198,24 @@ class ViscousStress(SceneModel):
     """What the viscosity depends on. Default: {type: newtonian}."""
 
 
+class CustomViscosity(SceneModel):
+    """A viscosity that a program has added with `warpsph.register_viscosity`."""
+
+    type: Literal["custom"] = "custom"
+    law: str
+    """Name of the viscosity, as it was registered."""
+
+    parameters: Mapping[str, Real] = {}
+    """Its parameters by name, all of them. Default: none."""
+
+    @property
+    def numbers(self) -> tuple[float, ...]:
+        """Parameters of the formula, in its order."""
+        return tuple(self.parameters[name] for name in VISCOSITY_LAWS[self.law].parameters)
+
+
 Viscosity = Annotated[
-    NoViscosity | ArtificialViscosity | LaminarViscosity | ViscousStress | SubParticleScale,
+    NoViscosity | ArtificialViscosity | LaminarViscosity | ViscousStress | SubParticleScale | CustomViscosity,
     Field(discriminator="type"),
 ]
 
@@ -211,16 +246,16 @@ class TransportVelocity(SceneModel):
 
 
 class Shifting(SceneModel):
-    """Particles are shifted towards even distances (Lind et al. 2012; Skillen et al. 2013), along a free surface but
+    """Particles are shifted towards even distances (Lind et al. 2012; Sun et al. 2017), along a free surface but
     not across it (Marrone et al. 2010; Sun et al. 2017)."""
 
     type: Literal["shifting"] = "shifting"
-    coefficient: Annotated[Real, Field(gt=0.0, le=10.0)] = 2.0
-    """Shift velocity over h |v| |grad C| [1]. Default: 2."""
+    coefficient: Annotated[Real, Field(gt=0.0, le=20.0)] = 4.0
+    """Shift velocity over h v |grad C| with the largest speed v of the flow [1]. Default: 4."""
 
     @property
     def strength(self) -> float:
-        """Shift velocity over h |v| |grad C| [1]."""
+        """Shift velocity over h v |grad C| [1]."""
         return self.coefficient
 
 

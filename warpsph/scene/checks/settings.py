@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
+from warpsph.laws.states import BUILT_IN_STATES, STATE_LAWS
+from warpsph.laws.viscosities import VISCOSITY_LAWS
 from warpsph.scene.checks.common import expression_problems, no_such_axis, repeated_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
 if TYPE_CHECKING:
-    from warpsph.scene.fluid_models import NewtonianLaw
+    from warpsph.laws.states import StateLaw
+    from warpsph.laws.viscosities import ViscosityLaw
+    from warpsph.scene.fluid_models import CustomState, CustomViscosity, NewtonianLaw
     from warpsph.scene.schema import Scene
 
 MAX_FRAMES = 100_000
@@ -73,7 +77,27 @@ def _numerics_problems(scene: Scene) -> Iterator[Problem]:
     if numerics.density == "summation" and numerics.density_diffusion.type != "none":
         message = "a density that is summed obeys no equation that could be diffused"
         yield Problem.at("numerics.density_diffusion.type", message, "none", numerics.density_diffusion.type)
+    if numerics.state.type == "custom":
+        yield from _custom_problems("numerics.state", numerics.state, STATE_LAWS, BUILT_IN_STATES)
+    if numerics.viscosity.type == "custom":
+        yield from _custom_problems("numerics.viscosity", numerics.viscosity, VISCOSITY_LAWS, ())
     yield from _viscosity_problems(scene)
+
+
+def _custom_problems(
+    key: str,
+    model: CustomState | CustomViscosity,
+    laws: Mapping[str, StateLaw] | Mapping[str, ViscosityLaw],
+    built_in: Collection[str],
+) -> Iterator[Problem]:
+    added = [name for name in laws if name not in built_in]
+    if model.law not in added:
+        allowed = ", ".join(added) or "none is registered"
+        yield Problem.at(f"{key}.law", "no such law has been registered", allowed, model.law)
+    elif set(model.parameters) != set(laws[model.law].parameters):
+        allowed = ", ".join(laws[model.law].parameters) or "no parameters"
+        message = f"these are not the parameters of {model.law}"
+        yield Problem.at(f"{key}.parameters", message, allowed, dict(model.parameters))
 
 
 _NEED_VISCOSITY = ("laminar", "sub_particle_scale")
