@@ -16,6 +16,7 @@ import warpsph
 ROOT = Path(__file__).parents[1]
 
 LAYERS: tuple[tuple[str, ...], ...] = (
+    ("warpsph.laws",),
     ("warpsph.scene", "warpsph.frame"),
     ("warpsph.sampling", "warpsph.output", "warpsph.particles"),
     ("warpsph.probes",),
@@ -91,7 +92,7 @@ def test_device_code_imports_warp_and_itself() -> None:
     assert foreign == []
 
 
-@pytest.mark.parametrize("package", ["scene", "sampling", "probes", "output"])
+@pytest.mark.parametrize("package", ["laws", "scene", "sampling", "probes", "output"])
 def test_host_packages_know_no_device(package: str) -> None:
     imported = {name for path in (ROOT / "warpsph" / package).rglob("*.py") for name in imports_of(path)}
     assert {name for name in imported if name.partition(".")[0] in {"warp", "warpsph_kernels"}} == set()

@@ -80,15 +80,17 @@ OBJECTS = (
 UNIONS = (
     ("Shapes", "`shape` of fluids and boundaries", ("Boundary", "shape")),
     ("Motions", "each item of `motion` of boundaries", ("Boundary", "motion")),
+    ("State", "`numerics.state`", ("Numerics", "state")),
     ("Density diffusion", "`numerics.density_diffusion`", ("Numerics", "density_diffusion")),
     ("Viscosity", "`numerics.viscosity`", ("Numerics", "viscosity")),
+    ("Viscosity laws", "`law` of a viscous stress", ("ViscousStress", "law")),
+    ("Particle order", "`numerics.particle_order`", ("Numerics", "particle_order")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
     ("Initial pressure", "`pressure` of fluids", ("Fluid", "pressure")),
     ("Probes", "each value of `probes`", None),
     ("References", "each value of `references`", None),
 )
 PARTS = (
-    ("State", "`numerics.state`", "Tait"),
     ("Bounds", "`bounds` of a plane, `domain.kill_box`", "Bounds"),
     ("Rotation", "`rotate` of a transform", "Rotation"),
     ("Table in the scene", "`table` of a series reference", "InlineTable"),
