@@ -90,8 +90,11 @@ UNIONS = (
         ("Boundary", "shape"),
     ),
     ("Motions", "each item of `motion` of boundaries and clamps", ("Boundary", "motion")),
+    ("State", "`numerics.state`", ("Numerics", "state")),
     ("Density diffusion", "`numerics.density_diffusion`", ("Numerics", "density_diffusion")),
     ("Viscosity", "`numerics.viscosity`", ("Numerics", "viscosity")),
+    ("Viscosity laws", "`law` of a viscous stress", ("ViscousStress", "law")),
+    ("Particle order", "`numerics.particle_order`", ("Numerics", "particle_order")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
     ("Initial pressure", "`pressure` of fluids", ("Fluid", "pressure")),
     ("Loads", "each value of `loads` of structures", ("Structure", "loads")),
@@ -100,7 +103,6 @@ UNIONS = (
     ("References", "each value of `references`", None),
 )
 PARTS = (
-    ("State", "`numerics.state`", "Tait"),
     ("Bounds", "`bounds` of a plane, `domain.kill_box`", "Bounds"),
     ("Rotation", "`rotate` of a transform", "Rotation"),
     ("Table in the scene", "`table` of a series reference", "InlineTable"),

@@ -4,6 +4,9 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from warpsph.extending import register_smoothing_kernel as register_smoothing_kernel
+    from warpsph.extending import register_state as register_state
+    from warpsph.extending import register_viscosity as register_viscosity
     from warpsph.physics.registration import register_material as register_material
     from warpsph.scene.loader import load_scene as load_scene
     from warpsph.scene.schema import Scene as Scene
@@ -11,13 +14,25 @@ if TYPE_CHECKING:
     from warpsph.solver.simulation import Simulation as Simulation
 
 __version__ = "0.1.0"
-__all__ = ["Scene", "Simulation", "load_scene", "register_material", "run_scene"]
+__all__ = [
+    "Scene",
+    "Simulation",
+    "load_scene",
+    "register_material",
+    "register_smoothing_kernel",
+    "register_state",
+    "register_viscosity",
+    "run_scene",
+]
 
 _HOMES = {
     "Scene": "warpsph.scene.schema",
     "Simulation": "warpsph.solver.simulation",
     "load_scene": "warpsph.scene.loader",
     "register_material": "warpsph.physics.registration",
+    "register_smoothing_kernel": "warpsph.extending",
+    "register_state": "warpsph.extending",
+    "register_viscosity": "warpsph.extending",
     "run_scene": "warpsph.solver.run",
 }
 

@@ -10,6 +10,9 @@ from typing import Any
 
 import warp as wp
 
+PARAMETERS = 4
+"""Numbers that a formula may take from the scene."""
+
 PRECISIONS = {"single": wp.float32, "double": wp.float64}
 
 
@@ -34,6 +37,16 @@ class Arithmetic:
     def record(self) -> Any:
         """A vector with one scalar behind it, read together by the pair loops."""
         return wp.types.vector(self.dimension + 1, self.real)
+
+    @cached_property
+    def matrix(self) -> Any:
+        """A tensor of the pair loops, `dimension` rows and columns."""
+        return wp.types.matrix((self.dimension, self.dimension), self.real)
+
+    @cached_property
+    def parameters(self) -> Any:
+        """The numbers that a formula takes from the scene, with zeros behind them."""
+        return wp.types.vector(PARAMETERS, self.real)
 
     @cached_property
     def point(self) -> Any:

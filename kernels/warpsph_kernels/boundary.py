@@ -36,7 +36,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     pack, unpack = make_packing(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     shape, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
-    state = STATES[options.state](arithmetic)
+    state = STATES[options.state].make(arithmetic)
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
@@ -114,7 +114,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         change = real(wp.float64(0.5) * clock[0]) * half_steps * density_rate[w]
         deviation = wp.max(density_deviation[w] + change, real(0.0))
         density_deviation[w] = deviation
-        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
         position_pressure[w] = pack(unpack(position_pressure[w]), p)
         if wp.static(options.wall_friction):
             friction[i] = pack(unpack(velocity_volume[w]), friction[i][dim])
@@ -175,7 +175,10 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
             v_wb = vector()
             if wp.static(options.wall_friction):
                 v_wb = friction[i][dim] * (unpack(friction[i]) - unpack(vV_b))
-            pair = wall_force(c, x_wb, v_wb, p_w, xp_b[dim])
+            u_wb = vector()
+            if wp.static(options.pressure_form == "riemann"):
+                u_wb = unpack(velocity_volume[first_wall + i]) - unpack(vV_b)
+            pair = wall_force(c, x_wb, v_wb, u_wb, p_w, xp_b[dim])
             if wp.static(options.has_barrier):
                 pair -= barrier(c, -x_wb, normal[i])
             total += vV_b[dim] * pair

@@ -10,6 +10,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_packing
+from warpsph_kernels.state import STATES
 
 BLOCK = 256
 """Particles a thread of `survey` reads."""
@@ -24,6 +25,11 @@ LIMITS = ("acoustic", "force", "viscous", "max_step", "frame")
 ACOUSTIC, FORCE, VISCOUS, MAX_STEP, FRAME = range(5)
 
 
+_DOUBLE = {dimension: Arithmetic(dimension, "double") for dimension in (2, 3)}
+STATE_PARAMETERS = _DOUBLE[2].parameters
+"""Type of the parameters of the state, which the step choice takes in double precision."""
+
+
 class ClockKernels(NamedTuple):
     """Kernels of the step choice, in the order of their use."""
 
@@ -34,21 +40,24 @@ class ClockKernels(NamedTuple):
 
 @wp.struct
 class StepLimits:
-    """Numbers behind the limits: CFL number, h [m], c0 [m/s], gamma, kinematic viscosity [m^2/s], cap [s]."""
+    """Numbers behind the limits: CFL number, h [m], rho0 [kg/m^dim], c0 [m/s], the parameters of the state, kinematic
+    viscosity [m^2/s], cap [s]."""
 
     cfl: wp.float64
     smoothing_length: wp.float64
+    rest_density: wp.float64
     sound_speed: wp.float64
-    gamma: wp.float64
+    state_parameters: STATE_PARAMETERS
     viscosity: wp.float64
     max_step: wp.float64
 
 
 @cache
-def make_clock_kernels(arithmetic: Arithmetic) -> ClockKernels:
-    """Return the kernels of the step choice."""
+def make_clock_kernels(arithmetic: Arithmetic, state: str) -> ClockKernels:
+    """Return the kernels of the step choice for an equation of state by its name."""
+    stiffening = STATES[state].make_stiffening(_DOUBLE[arithmetic.dimension])
     real, vector, record = arithmetic.real, arithmetic.vector, arithmetic.record
-    module = f"warpsph_clock_{arithmetic.label}"
+    module = f"warpsph_clock_{state}_{arithmetic.label}"
     _, unpack = make_packing(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
@@ -107,7 +116,7 @@ def make_clock_kernels(arithmetic: Arithmetic) -> ClockKernels:
         """One thread: the next step from the extremes, and the time at its end.
 
         Acoustic: cfl h / (c + v); force: cfl sqrt(h / a); viscous: h^2 / (8 nu) (Monaghan 1992; Morris,
-        Fox & Zhu 1997). The local sound speed follows the compression, c = c0 (rho/rho0)^((gamma-1)/2).
+        Fox & Zhu 1997). The sound speed is that at the largest compression, and not below c0.
         Two steps or less before the target, the step is shortened to land on it.
         """
         peak = wp.vector(dtype=wp.float64, length=5)
@@ -118,8 +127,9 @@ def make_clock_kernels(arithmetic: Arithmetic) -> ClockKernels:
         speed = wp.sqrt(peak[0])
         acc = wp.sqrt(peak[1])
         h = limits.smoothing_length
-        stiffening = wp.pow(wp.float64(1.0) + peak[3], wp.float64(0.5) * (limits.gamma - wp.float64(1.0)))
-        step = limits.cfl * h / (limits.sound_speed * stiffening + speed)
+        rho0 = limits.rest_density
+        stiff = stiffening(peak[3] * rho0, rho0, limits.sound_speed, limits.state_parameters)
+        step = limits.cfl * h / (limits.sound_speed * wp.sqrt(wp.max(stiff, wp.float64(1.0))) + speed)
         ruling = wp.static(ACOUSTIC)
         force_step = limits.cfl * wp.sqrt(h / wp.max(acc, wp.float64(1.0e-30)))
         if force_step < step:

@@ -40,6 +40,12 @@ class FluidOptions:
     """Whether walls that are not dynamic may have negative pressure."""
     wall_friction: bool
     """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
+    stress: str = "none"
+    """What the viscous stress tensor is made of: none, a law of `warpsph_kernels.rheology`, or sub_particle_scale."""
+    particle_order: str = "none"
+    """What spreads the particles evenly: none, transport_velocity or shifting."""
+    density: str = "continuity"
+    """Where the density comes from: continuity, summation or mixed."""
 
     @property
     def has_barrier(self) -> bool:
@@ -51,6 +57,10 @@ class FluidOptions:
         """Name of the kernel module of these options, the same in every process so that its binary is reused."""
         digest = hashlib.sha256(repr(self).encode()).hexdigest()[:10]
         return f"warpsph_fluid_{self.arithmetic.label}_{digest}"
+
+    def module_of(self, concept: str) -> str:
+        """Name of the module of kernels that only some scenes have."""
+        return f"{self.module}_{concept}"
 
 
 class FluidKernels(NamedTuple):
@@ -67,7 +77,8 @@ class FluidKernels(NamedTuple):
 def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     """Return the device function `pair_force` of the particles a and b, divided by V_a V_b [N/m^(2 dim)].
 
-    It changes its sign when a and b are exchanged, which is what conserves momentum to rounding.
+    It changes its sign when a and b are exchanged, which is what conserves momentum to rounding. `v_ab` is the velocity
+    difference that viscosity sees, `u_ab` that which a pressure form sees; they differ at walls.
     """
     arithmetic = options.arithmetic
     real, vector = arithmetic.real, arithmetic.vector
@@ -76,10 +87,10 @@ def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     pressure_term = PRESSURE_FORMS[options.pressure_form](arithmetic)
     viscous_term = VISCOSITIES[options.viscosity](arithmetic)
 
-    def pair_force(c: constants_type, x_ab: vector, v_ab: vector, p_a: real, p_b: real):
+    def pair_force(c: constants_type, x_ab: vector, v_ab: vector, u_ab: vector, p_a: real, p_b: real):
         r2 = wp.dot(x_ab, x_ab)
         F = c.slope_norm * slope(wp.sqrt(r2) * c.inverse_h)
-        force = -pressure_term(p_a, p_b) * F * x_ab
+        force = -pressure_term(c, x_ab, u_ab, r2, p_a, p_b) * F * x_ab
         if wp.static(viscous):
             force += viscous_term(c, x_ab, v_ab, r2) * F
         return force
@@ -99,12 +110,13 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
-    state = STATES[options.state](arithmetic)
+    state = STATES[options.state].make(arithmetic)
     diffusion = DIFFUSIONS[options.density_diffusion](arithmetic)
     has_viscosity = options.viscosity != "none"
     fluid_force = make_pair_force(options, has_viscosity)
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     has_walls = options.wall != "none"
+    shifts = options.particle_order != "none"
     barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
 
     @wp.kernel(module=module, enable_backward=False)
@@ -114,21 +126,27 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         clock: wp.array(dtype=wp.float64),
         origin: point,
         density_rate: wp.array(dtype=real),
+        shift: wp.array(dtype=vector),
         position: wp.array(dtype=point),
         density_deviation: wp.array(dtype=real),
         velocity_volume: wp.array(dtype=record),
         position_pressure: wp.array(dtype=record),
     ):
-        """One particle: drift and update the density over half a step, then the pressure and the volume."""
+        """One particle: drift and update the density over half a step, then the pressure and the volume.
+
+        `shift` [m/s] is what the particle's own velocity has beside that of the flow.
+        """
         i = offset + wp.tid()
         half_step = wp.float64(0.5) * clock[0]
         v = unpack(velocity_volume[i])
         x = position[i] + half_step * widen(v)
+        if wp.static(shifts):
+            x += half_step * widen(shift[i])
         deviation = density_deviation[i] + real(half_step) * density_rate[i]
         position[i] = x
         density_deviation[i] = deviation
         velocity_volume[i] = pack(v, c.mass / (c.rest_density + deviation))
-        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
         position_pressure[i] = pack(narrow(x, origin), p)
 
     @wp.kernel(module=module, enable_backward=False)
@@ -146,7 +164,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         i = offset + wp.tid()
         deviation = density_deviation[i]
         x = narrow(position[i], origin)
-        p = state(deviation, c.rest_density, c.sound_speed, c.gamma)
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
         position_pressure[i] = pack(x, p)
         position_density[i] = pack(x, deviation)
         velocity_volume[i] = pack(unpack(velocity_volume[i]), c.mass / (c.rest_density + deviation))
@@ -182,7 +200,8 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
             xp_b = position_pressure[b]
             vV_b = velocity_volume[b]
             x_ab = separation(x_a, unpack(xp_b), c.period)
-            total += vV_b[dim] * fluid_force(c, x_ab, v_a - unpack(vV_b), p_a, xp_b[dim])
+            v_ab = v_a - unpack(vV_b)
+            total += vV_b[dim] * fluid_force(c, x_ab, v_ab, v_ab, p_a, xp_b[dim])
         if wp.static(has_walls):
             for n in range(end, ends[i, 1]):
                 b = neighbours[i, n]
@@ -192,7 +211,10 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
                 if wp.static(options.wall_friction):
                     friction_b = friction[b - first_wall]
                     v_ab = friction_b[dim] * (v_a - unpack(friction_b))
-                force = wall_force(c, x_ab, v_ab, p_a, xp_b[dim])
+                u_ab = vector()
+                if wp.static(options.pressure_form == "riemann"):
+                    u_ab = v_a - unpack(velocity_volume[b])
+                force = wall_force(c, x_ab, v_ab, u_ab, p_a, xp_b[dim])
                 if wp.static(options.has_barrier):
                     force += barrier(c, x_ab, wall_normal[b - first_wall])
                 total += c.wall_volume * force
@@ -205,16 +227,22 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         origin: point,
         acceleration: wp.array(dtype=vector),
         density_deviation: wp.array(dtype=real),
+        next_shift: wp.array(dtype=vector),
+        shift: wp.array(dtype=vector),
         position: wp.array(dtype=point),
         velocity_volume: wp.array(dtype=record),
         position_density: wp.array(dtype=record),
     ):
-        """One particle: velocity over the whole step, position over its second half."""
+        """One particle: velocity over the whole step, position over its second half, with a new shift velocity."""
         i = offset + wp.tid()
         step = clock[0]
         vV = velocity_volume[i]
         v = unpack(vV) + real(step) * acceleration[i]
         x = position[i] + wp.float64(0.5) * step * widen(v)
+        if wp.static(shifts):
+            dv = next_shift[i]
+            shift[i] = dv
+            x += wp.float64(0.5) * step * widen(dv)
         position[i] = x
         velocity_volume[i] = pack(v, vV[dim])
         position_density[i] = pack(narrow(x, origin), density_deviation[i])
@@ -228,12 +256,14 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         ends: wp.array2d(dtype=wp.int32),
         position_density: wp.array(dtype=record),
         velocity_volume: wp.array(dtype=record),
+        density_gradient: wp.array(dtype=vector),
         density_rate: wp.array(dtype=real),
         density_deviation: wp.array(dtype=real),
     ):
         """One particle: drho_a/dt = rho_a sum_b V_b v_ab . grad_a W_ab + diffusion, then rho over half a step.
 
-        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010).
+        The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010), who also take away the
+        mean of the pair's renormalised `density_gradient` [kg/m^(dim+1)].
         """
         i = offset + wp.tid()
         xd_a = position_density[i]
@@ -241,6 +271,9 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         v_a = unpack(velocity_volume[i])
         divergence = real(0.0)
         diffused = real(0.0)
+        gradient_a = vector()
+        if wp.static(options.density_diffusion == "delta_sph"):
+            gradient_a = density_gradient[i]
         end = ends[i, 0]
         for n in range(end):
             b = neighbours[i, n]
@@ -252,6 +285,8 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
             divergence += VF * wp.dot(v_a - unpack(vV_b), x_ab)
             if wp.static(options.density_diffusion != "none"):
                 diffused += VF * diffusion(c, x_ab, deviation_a, xd_b[dim])
+            if wp.static(options.density_diffusion == "delta_sph"):
+                diffused -= VF * wp.dot(gradient_a + density_gradient[b], x_ab)
         if wp.static(has_walls):
             for n in range(end, ends[i, 1]):
                 b = neighbours[i, n]

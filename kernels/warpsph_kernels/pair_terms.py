@@ -20,7 +20,8 @@ Factory = Callable[[Arithmetic], Any]
 def make_constants_struct(arithmetic: Arithmetic) -> Any:
     """Return the struct of a fluid's numbers, in SI units.
 
-    `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0; for `barrier` see `make_barrier`.
+    `slope_norm` = alpha_d h^-(d+2), `diffusion` = delta h c0; for `barrier` see `make_barrier`. The two vectors of
+    parameters are those of the state and of a viscosity that a user has added.
     """
     real, vector = arithmetic.real, arithmetic.vector
 
@@ -36,7 +37,6 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "wall_volume",
         "rest_density",
         "sound_speed",
-        "gamma",
         "artificial_viscosity",
         "dynamic_viscosity",
         "diffusion",
@@ -44,19 +44,42 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "barrier",
         "inverse_barrier_reach",
     )
-    FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | {"gravity": vector, "period": vector}
+    parameters = dict.fromkeys(("state_parameters", "viscosity_parameters"), arithmetic.parameters)
+    vectors = {"gravity": vector, "period": vector}
+    FluidConstants.__annotations__ = dict.fromkeys(scalars, real) | vectors | parameters
     return wp.struct(FluidConstants)
 
 
 @cache
 def make_symmetric_pressure(arithmetic: Arithmetic) -> Any:
     """p_a + p_b (Colagrossi & Landrini 2003)."""
-    real = arithmetic.real
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
 
-    def symmetric_pressure(p_a: real, p_b: real):
+    def symmetric_pressure(c: constants_type, x_ab: vector, u_ab: vector, r2: real, p_a: real, p_b: real):
         return p_a + p_b
 
     return wp.func(symmetric_pressure)
+
+
+RIEMANN_LIMITER = 3.0
+
+
+@cache
+def make_riemann_pressure(arithmetic: Arithmetic) -> Any:
+    """2 p* = p_a + p_b + rho0 min(3 max(u, 0), c0) u, u = -v_ab . x_ab / r (Zhang, Hu & Adams 2017).
+
+    The linearised Riemann solver between a and b, whose dissipation the limiter takes away where particles part,
+    and keeps small where they come together slowly. Density and sound speed are those at rest.
+    """
+    constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
+
+    def riemann_pressure(c: constants_type, x_ab: vector, u_ab: vector, r2: real, p_a: real, p_b: real):
+        tiny = real(1.0e-12) * c.smoothing_length * c.smoothing_length
+        u = wp.max(-wp.dot(u_ab, x_ab) / wp.sqrt(wp.max(r2, tiny)), real(0.0))
+        beta = wp.min(real(wp.static(RIEMANN_LIMITER)) * u, c.sound_speed)
+        return p_a + p_b + c.rest_density * beta * u
+
+    return wp.func(riemann_pressure)
 
 
 @cache
@@ -87,12 +110,15 @@ def make_artificial_viscosity(arithmetic: Arithmetic) -> Any:
 
 @cache
 def make_laminar_viscosity(arithmetic: Arithmetic) -> Any:
-    """2 mu r^2 / (r^2 + 0.01 h^2) v_ab (Morris, Fox & Zhu 1997, eq. 22, in volume form)."""
+    """2 mu v_ab (Morris, Fox & Zhu 1997, eq. 22, in volume form).
+
+    Their factor x_ab . grad W / (r^2 + 0.01 h^2) is F without the softening, which guards a division that F does not
+    have: it would take 1.5 per cent of the viscosity away, at any resolution.
+    """
     constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
 
     def laminar_viscosity(c: constants_type, x_ab: vector, v_ab: vector, r2: real):
-        softened = r2 + real(0.01) * c.smoothing_length * c.smoothing_length
-        return real(2.0) * c.dynamic_viscosity * r2 / softened * v_ab
+        return real(2.0) * c.dynamic_viscosity * v_ab
 
     return wp.func(laminar_viscosity)
 
@@ -159,10 +185,20 @@ def make_barrier(arithmetic: Arithmetic) -> Any:
     return wp.func(barrier)
 
 
-PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType({"symmetric": make_symmetric_pressure})
-VISCOSITIES: Mapping[str, Factory] = MappingProxyType(
-    {"none": make_no_viscosity, "artificial": make_artificial_viscosity, "laminar": make_laminar_viscosity}
+PRESSURE_FORMS: Mapping[str, Factory] = MappingProxyType(
+    {"symmetric": make_symmetric_pressure, "riemann": make_riemann_pressure}
 )
+VISCOSITIES: dict[str, Factory] = {
+    "none": make_no_viscosity,
+    "artificial": make_artificial_viscosity,
+    "laminar": make_laminar_viscosity,
+}
+"""By name; `warpsph.register_viscosity` adds to it."""
 DIFFUSIONS: Mapping[str, Factory] = MappingProxyType(
-    {"none": make_no_diffusion, "molteni_colagrossi": make_molteni_colagrossi, "fourtakas": make_fourtakas}
+    {
+        "none": make_no_diffusion,
+        "molteni_colagrossi": make_molteni_colagrossi,
+        "fourtakas": make_fourtakas,
+        "delta_sph": make_molteni_colagrossi,  # less the gradients, which the sum adds
+    }
 )

@@ -4,12 +4,15 @@ from __future__ import annotations
 
 import re
 import runpy
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from registries import restored_registries
 from warpsph_kernels.materials import LAWS
+from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
 from warpsph import register_material
 from warpsph.laws.materials import MATERIAL_LAWS
@@ -103,3 +106,35 @@ def test_the_readme_python_example_runs(tmp_path: Path, monkeypatch: pytest.Monk
 def test_the_readme_scene_loads() -> None:
     (text,) = blocks("README.md", "yaml")
     assert scene_from_yaml(text).references
+
+
+@pytest.fixture(scope="module")
+def own_formulas(tmp_path_factory: pytest.TempPathFactory) -> Iterator[dict[str, Any]]:
+    """Names after the blocks of the page on formulas, run as one file: Warp reads their source."""
+    file = tmp_path_factory.mktemp("formulas") / "own_formulas.py"
+    file.write_text("\n\n".join(blocks("docs/extending.md", "python")))
+    with restored_registries():
+        yield runpy.run_path(str(file))
+
+
+def test_own_formulas_run(own_formulas: dict[str, Any]) -> None:
+    sim = own_formulas["sim"]
+    water = sim.frame(["density", "pressure", "velocity"]).sets[0].fields
+    strain = water["density"] / 1000.0 - 1.0
+    expected = 1000.0 * sim.sound_speed**2 * strain * (1.0 + 2.0 * strain)
+    assert sim.time == 0.2
+    assert np.abs(water["velocity"]).max() > 0.5
+    # The deviation is stored in single precision beside a density of 1000.
+    assert water["pressure"] == pytest.approx(expected, rel=1e-4, abs=1e-6 * expected.max())
+
+
+def test_an_own_kernel_is_normalised(own_formulas: dict[str, Any]) -> None:
+    """Norm of Wendland's C6: 39 / 14 pi in 2D and 1365 / 512 pi in 3D for a support of 2 h (Dehnen & Aly 2012)."""
+    kernel = SMOOTHING_KERNELS["wendland_c6"]
+    assert kernel.alpha[2] == pytest.approx(78.0 / (28.0 * np.pi), rel=1e-9)
+    assert kernel.alpha[3] == pytest.approx(1365.0 / (512.0 * np.pi), rel=1e-9)
+
+
+def test_a_scene_with_own_formulas_survives_its_text(own_formulas: dict[str, Any]) -> None:
+    scene = own_formulas["scene"]
+    assert scene_from_yaml(scene.to_yaml()) == scene

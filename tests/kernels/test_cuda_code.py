@@ -7,13 +7,18 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.boundary import make_wall_kernels
 from warpsph_kernels.cells import make_cell_kernels
 from warpsph_kernels.clock import make_clock_kernels
+from warpsph_kernels.density_gradient import make_density_gradient
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.particle_order import make_order_kernels
+from warpsph_kernels.stress import make_stress_kernels
 from warpsph_kernels.structure import StructureOptions, make_stress_kernel, make_structure_kernels
 from warpsph_kernels.structure_survey import make_observation_kernel, make_survey_kernel
+from warpsph_kernels.summation import make_sum_density
 from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
 SM_80 = 80
+CONCEPTS = ("stress", "density_gradient", "order", "summation")
 
 
 @pytest.mark.parametrize(
@@ -43,19 +48,28 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
         periodic=periodic,
         smoothing="wendland_c2",
         state="tait",
-        pressure_form="symmetric",
-        density_diffusion="fourtakas",
+        pressure_form="symmetric" if dimension == 3 else "riemann",
+        density_diffusion="delta_sph",
         viscosity="artificial",
         wall=wall,
         wall_suction=False,
         wall_friction=True,
+        particle_order="transport_velocity" if dimension == 2 else "shifting",
+        density="mixed",
+        stress="carreau" if dimension == 2 else "sub_particle_scale",
     )
     make_fluid_kernels(options)
     make_wall_kernels(options)
     make_move(options)
     make_surface_kernels(options)
+    make_stress_kernels(options)
+    make_density_gradient(options)
+    make_order_kernels(options)
+    make_sum_density(options)
     cells = make_cell_kernels(arithmetic, periodic).module
-    clock = make_clock_kernels(arithmetic).module
-    for name in (options.module, cells, clock, reorder.MODULE):
+    clock = make_clock_kernels(arithmetic, options.state).module
+    extra = [options.module_of(concept) for concept in CONCEPTS]
+    modules = (options.module, *extra, cells, clock, reorder.MODULE)
+    for name in modules:
         wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
-    assert len(list(tmp_path.glob("*.ptx"))) == 4
+    assert len(list(tmp_path.glob("*.ptx"))) == len(modules)

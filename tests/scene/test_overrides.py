@@ -4,7 +4,7 @@ import pytest
 from scene_texts import DAM_BREAK, problems_of
 
 from warpsph.scene import load_scene, scene_from_yaml
-from warpsph.scene.numerics import FourtakasDiffusion, LaminarViscosity
+from warpsph.scene.fluid_models import FourtakasDiffusion, LaminarViscosity
 from warpsph.scene.shapes import Sphere
 
 

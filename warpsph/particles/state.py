@@ -20,6 +20,13 @@ UNITS = {
     "set_index": "1",
     "position_pressure": "m, Pa",
     "position_density": "m, kg/m^dim",
+    "carried_viscosity": "Pa s",
+    "viscosity": "Pa s",
+    "stress": "Pa",
+    "shift": "m/s",
+    "next_shift": "m/s",
+    "coverage": "1",
+    "density_gradient": "kg/m^(dim+1)",
 }
 
 

@@ -5,9 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
 import warp as wp
 from warpsph_kernels.fluid import FluidOptions
 
+from warpsph.laws.states import StateLaw
 from warpsph.particles.launch import Launcher
 from warpsph.particles.neighbours import NeighbourRows, SearchSpace
 from warpsph.particles.state import Layout, Scratch, State
@@ -25,6 +27,16 @@ class Assembly:
     state: State
     scratch: Scratch
     clock: wp.array
+    state_law: StateLaw
+
+    def density_deviation(self, pressure: np.ndarray) -> np.ndarray:
+        """Return rho - rho0 [kg/m^dim] of the fluid at pressures [Pa]."""
+        c = self.constants
+        density = float(c.rest_density)
+        numbers = [float(x) for x in c.state_parameters][: len(self.state_law.parameters)]
+        return self.state_law.deviation(
+            pressure, density, density * float(c.sound_speed) ** 2, tuple(numbers)
+        )
 
     @property
     def origin(self) -> Any:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,6 @@ from warpsph.particles.neighbours import NeighbourRows
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.physics.mirrored_walls import MirroredWalls
-from warpsph.physics.state import density_deviation
 from warpsph.sampling.kinematics import Pose, RigidMotion
 from warpsph.scene.placement import cross_matrix
 
@@ -29,6 +28,7 @@ class WallModel:
         motions: rigid motion by set index, for walls that move.
         sets: number of all sets, since a particle names its set by index.
         surface: arrays that this model fills for the fluid.
+        fluid_reaction: adds to the force on each wall particle [N] what acts beside pair forces.
         mirror: mirror points of modified dynamic walls.
     """
 
@@ -39,11 +39,13 @@ class WallModel:
         motions: Mapping[int, RigidMotion],
         sets: int,
         surface: WallSurface,
+        fluid_reaction: Callable[[wp.array], None],
         mirror: MirroredWalls | None = None,
     ) -> None:
         self._mirror = mirror
         self.count = assembly.layout.walls
         self.surface = surface
+        self._fluid_reaction = fluid_reaction
         self._assembly = assembly
         self._lists = lists
         self._motions = dict(motions)
@@ -123,20 +125,18 @@ class WallModel:
         """Give dynamic walls the density at which they are in equilibrium with the fluid before them."""
         if self.method != "dynamic":
             return
-        a, c = self._assembly, self._assembly.constants
+        a = self._assembly
         rows = self._lists.wall
         assert rows is not None
         self._extrapolation(rows).run(self.count)
         pressure = host_view(a.scratch.position_pressure)[a.layout.fluids :, -1].astype(np.float64)
-        strength = float(c.rest_density) * float(c.sound_speed) ** 2
-        deviation = density_deviation(
-            np.maximum(pressure, 0.0), float(c.rest_density), strength, float(c.gamma)
-        )
+        deviation = a.density_deviation(np.maximum(pressure, 0.0))
         write_array(a.state.density_deviation[a.layout.fluids :], deviation)
 
     def react(self) -> wp.array:
         """Return the force of the fluid on each wall particle [N], shape (walls,); needs synchronised records."""
         self._react.run(self.count)
+        self._fluid_reaction(self.force)
         return self.force
 
     def bind_lists(self) -> None:

@@ -1,22 +1,14 @@
 """Kernel sums over the particles near a place, on the host."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
 
 from warpsph.frame import SetFrame
+from warpsph.laws.smoothing import SMOOTHING_LAWS
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
-
-
-def wendland_c2(q: np.ndarray, dimension: int) -> np.ndarray:
-    """h^dimension W for q = r / h, zero from q = 2 on (Wendland 1995; Dehnen & Aly 2012, table 1)."""
-    normalisation = 7.0 / (4.0 * np.pi) if dimension == 2 else 21.0 / (16.0 * np.pi)
-    return normalisation * np.maximum(1.0 - 0.5 * q, 0.0) ** 4 * (2.0 * q + 1.0)
-
-
-KERNELS: dict[str, Callable[[np.ndarray, int], np.ndarray]] = {"wendland_c2": wendland_c2}
 
 
 @dataclass(frozen=True)
@@ -47,7 +39,7 @@ class Smoothing:
     def weight(self, distance: np.ndarray) -> np.ndarray:
         """W [m^-dimension] at distances [m]."""
         h = self.smoothing_length
-        return KERNELS[self.kernel](distance / h, self.dimension) / h**self.dimension
+        return SMOOTHING_LAWS[self.kernel].value(distance / h, self.dimension) / h**self.dimension
 
     def separation(self, position: np.ndarray, place: float, axis: int) -> np.ndarray:
         """position - place along an axis, to the nearest periodic image."""

@@ -2,74 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import Annotated, Literal
 
 from pydantic import Field
 
+from warpsph.laws.smoothing import SMOOTHING_LAWS
+from warpsph.scene.fluid_models import (
+    ArtificialViscosity,
+    DensityDiffusion,
+    FourtakasDiffusion,
+    NoParticleOrder,
+    ParticleOrder,
+    State,
+    Tait,
+    Viscosity,
+)
 from warpsph.scene.structures import StructureNumerics
-from warpsph.scene.types import Flag, NonNegativeReal, PositiveReal, Real, SceneModel
-
-SUPPORT_OVER_H: Mapping[str, float] = {"wendland_c2": 2.0}
-"""Support radius of each kernel in units of its smoothing length."""
-
-
-class Tait(SceneModel):
-    """p = rho0 c0^2 / gamma ((rho / rho0)^gamma - 1)."""
-
-    type: Literal["tait"] = "tait"
-    gamma: Annotated[Real, Field(ge=1.0, le=20.0)] = 7.0
-    """Exponent [1]. Default: 7."""
-
-
-class NoDensityDiffusion(SceneModel):
-    """The continuity equation alone."""
-
-    type: Literal["none"] = "none"
-
-
-class MolteniColagrossiDiffusion(SceneModel):
-    """Density diffusion after Molteni & Colagrossi (2009)."""
-
-    type: Literal["molteni_colagrossi"] = "molteni_colagrossi"
-    delta: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.1
-    """Diffusion coefficient [1]. Default: 0.1."""
-
-
-class FourtakasDiffusion(SceneModel):
-    """The same without the hydrostatic part, after Fourtakas et al. (2019)."""
-
-    type: Literal["fourtakas"] = "fourtakas"
-    delta: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.1
-    """Diffusion coefficient [1]. Default: 0.1."""
-
-
-DensityDiffusion = Annotated[
-    NoDensityDiffusion | MolteniColagrossiDiffusion | FourtakasDiffusion, Field(discriminator="type")
-]
-
-
-class NoViscosity(SceneModel):
-    """Inviscid."""
-
-    type: Literal["none"] = "none"
-
-
-class ArtificialViscosity(SceneModel):
-    """Artificial viscosity after Monaghan (1992)."""
-
-    type: Literal["artificial"] = "artificial"
-    alpha: Annotated[Real, Field(gt=0.0, le=1.0)] = 0.02
-    """Coefficient [1]. Default: 0.02."""
-
-
-class LaminarViscosity(SceneModel):
-    """Laminar viscosity after Morris, Fox & Zhu (1997), with each fluid's kinematic_viscosity."""
-
-    type: Literal["laminar"] = "laminar"
-
-
-Viscosity = Annotated[NoViscosity | ArtificialViscosity | LaminarViscosity, Field(discriminator="type")]
+from warpsph.scene.types import Flag, KernelName, NonNegativeReal, PositiveReal, Real, SceneModel
 
 
 class DynamicWall(SceneModel):
@@ -116,8 +65,9 @@ class Numerics(SceneModel):
     precision: Literal["single", "double"] = "single"
     """Of pair interactions; positions are integrated in double either way. Default: single."""
 
-    kernel: Literal["wendland_c2"] = "wendland_c2"
-    """Smoothing kernel. Default: wendland_c2."""
+    kernel: KernelName = "wendland_c2"
+    """Smoothing kernel. Its support radius is 2 h; that of quintic_spline and gaussian is 3 h, so that they see as
+    many neighbours at two thirds of h_over_dp. Default: wendland_c2."""
 
     h_over_dp: Annotated[Real, Field(ge=1.0, le=4.0)] = 1.5
     """Smoothing length over particle spacing [1]. Default: 1.5."""
@@ -128,17 +78,26 @@ class Numerics(SceneModel):
     expected_speed: PositiveReal | None = None
     """Largest expected speed [m/s], in place of the estimate behind sound_speed: auto. Default: null."""
 
-    state: Tait = Tait()
+    state: State = Tait()
     """Equation of state. Default: {type: tait, gamma: 7}."""
 
-    pressure_form: Literal["symmetric"] = "symmetric"
-    """Form of the pressure force. Default: symmetric."""
+    pressure_form: Literal["symmetric", "riemann"] = "symmetric"
+    """Form of the pressure force; riemann: with the dissipation of a Riemann solver and its limiter, after Zhang, Hu &
+    Adams (2017), in place of an artificial viscosity. Default: symmetric."""
+
+    density: Literal["continuity", "summation", "mixed"] = "continuity"
+    """Where the density comes from: the continuity equation; a sum over the neighbours, for fluid that fills its space
+    and begins at rest density; or the sum inside and the continuity equation near a free surface.
+    Default: continuity."""
 
     density_diffusion: DensityDiffusion = FourtakasDiffusion()
     """Diffusion in the continuity equation. Default: {type: fourtakas, delta: 0.1}."""
 
     viscosity: Viscosity = ArtificialViscosity()
     """Viscous force. Default: {type: artificial, alpha: 0.02}."""
+
+    particle_order: ParticleOrder = NoParticleOrder()
+    """What keeps the particles evenly spread. Default: {type: none}."""
 
     wall: WallMethod = ExtrapolatedWall()
     """How walls act on the fluid. Default: {type: extrapolated}."""
@@ -152,4 +111,4 @@ class Numerics(SceneModel):
     @property
     def support_over_h(self) -> float:
         """Support radius of the kernel in units of the smoothing length."""
-        return SUPPORT_OVER_H[self.kernel]
+        return SMOOTHING_LAWS[self.kernel].support

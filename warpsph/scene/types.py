@@ -4,7 +4,20 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import AfterValidator, AllowInfNan, BaseModel, ConfigDict, Field, Strict
+from pydantic import (
+    AfterValidator,
+    AllowInfNan,
+    BaseModel,
+    ConfigDict,
+    Field,
+    GetJsonSchemaHandler,
+    Strict,
+)
+from pydantic.json_schema import JsonSchemaValue
+from pydantic_core import PydanticCustomError
+from pydantic_core.core_schema import CoreSchema
+
+from warpsph.laws.smoothing import SMOOTHING_LAWS
 
 
 def _require_type(schema: dict[str, Any]) -> None:
@@ -67,6 +80,26 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 """Name of an object of the scene: safe in columns of CSV files and as a USD prim."""
 
 NAME_RULE = "a letter, then letters, digits and underscores"
+
+
+class _KnownKernel:
+    """Accepts the smoothing kernels that are registered when a scene is made."""
+
+    @staticmethod
+    def check(name: str) -> str:
+        if name not in SMOOTHING_LAWS:
+            raise PydanticCustomError("literal_error", "there is no such kernel")
+        return name
+
+    @classmethod
+    def __get_pydantic_json_schema__(
+        cls, core_schema: CoreSchema, handler: GetJsonSchemaHandler
+    ) -> JsonSchemaValue:
+        return {"type": "string", "enum": list(SMOOTHING_LAWS)}
+
+
+KernelName = Annotated[str, Strict(), AfterValidator(_KnownKernel.check), _KnownKernel]
+"""A smoothing kernel by its name."""
 
 FileName = Annotated[str, Field(min_length=1)]
 """A file, relative to the directory of the scene file."""

@@ -10,6 +10,7 @@ import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.clock import CLOCK_SIZE
 
+from warpsph.laws.states import STATE_LAWS
 from warpsph.particles.launch import Launcher
 from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
@@ -23,7 +24,6 @@ from warpsph.physics.fluid import (
 )
 from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.physics.sound_speed import choose_sound_speed
-from warpsph.physics.state import density_deviation
 from warpsph.physics.symmetry import SymmetryModel, images_of
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
@@ -86,6 +86,7 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
         state=allocate_state(arithmetic, layout, launcher.device),
         scratch=allocate_scratch(arithmetic, layout, launcher.device),
         clock=wp.zeros(CLOCK_SIZE, dtype=wp.float64, device=launcher.device),
+        state_law=STATE_LAWS[options.state],
     )
     _fill_state(scene, sets, assembly)
     search = _make_search(scene, assembly)
@@ -96,13 +97,13 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
         [len(s.position) for s in boundaries],
     )
     surface = make_wall_surface(arithmetic, flags, launcher.device)
-    fluid = FluidModel(assembly, lists, surface)
+    fluid = FluidModel(assembly, lists, surface, scene)
     walls = None
     if layout.walls:
         mirror = _mirrored_walls(scene, boundaries, assembly, search)
-        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, mirror)
+        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, fluid.react, mirror)
     symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
-    return Parts(assembly, search, fluid, walls, symmetry, *_reordered(assembly, search, walls))
+    return Parts(assembly, search, fluid, walls, symmetry, *_reordered(assembly, search, fluid, walls))
 
 
 def _layout(scene: Scene, sets: Sequence[SampledSet]) -> Layout:
@@ -159,8 +160,7 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
     position = np.concatenate([s.position for s in sets])
     velocity = np.concatenate([s.velocity for s in sets])
     pressure = np.concatenate([s.pressure for s in sets])
-    stiffness = fluid.density * float(c.sound_speed) ** 2
-    deviation = density_deviation(pressure, fluid.density, stiffness, float(c.gamma))
+    deviation = assembly.density_deviation(pressure)
     volume = float(c.mass) / (fluid.density + deviation)
     fields = {
         "position": position,
@@ -178,13 +178,13 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
 
 
 def _reordered(
-    assembly: Assembly, search: NeighbourSearch, walls: WallModel | None
+    assembly: Assembly, search: NeighbourSearch, fluid: FluidModel, walls: WallModel | None
 ) -> tuple[tuple[Reordered, ...], tuple[Reordered, ...]]:
     def follow(array: wp.array, table: int, first: int) -> Reordered:
         return Reordered(assembly.launcher, array, search.tables[table], first)
 
     state = [array for _, array in arrays_of(assembly.state)]
-    fluid_arrays = tuple(follow(array, FLUID, 0) for array in state)
+    fluid_arrays = tuple(follow(array, FLUID, 0) for array in (*state, *fluid.own_arrays.values()))
     if walls is None:
         return fluid_arrays, ()
     records = [array for _, array in arrays_of(assembly.scratch)]

@@ -38,23 +38,17 @@ def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -
 
 
 def _fields(parts: Parts) -> list[dict[str, Any]]:
-    groups = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
+    shared = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
+    groups = (*shared, *parts.fluid.arrays.items())
     return [{"name": name, "unit": UNITS[name], "bytes": int(array.capacity)} for name, array in groups]
 
 
 def _passes(parts: Parts) -> list[str]:
-    mirror = ["mirror"] if parts.symmetry else []
-    passes = [
-        "choose step",
-        "begin step",
-        *mirror,
-        "accelerate",
-        "kick and drift",
-        *mirror,
-        "update density",
-        "survey",
-    ]
-    walls = parts.walls
+    fluid, walls = parts.fluid.passes, parts.walls
+    passes = ["choose step", "begin step", *fluid, "survey"]
+    if parts.symmetry:
+        passes.insert(passes.index("accelerate"), "mirror")
+        passes.insert(passes.index("kick and drift") + 1, "mirror")
     if walls is None:
         return passes
     names = {"dynamic": "wall pressure", "modified_dynamic": "mirror points of walls"}

@@ -155,6 +155,7 @@ class FluidSystem:
     def _evolving_arrays(self) -> Iterator[tuple[str, wp.array]]:
         yield from arrays_of(self.parts.assembly.state)
         yield "listed_position", self.parts.search.listed_position
+        yield from self.parts.fluid.own_arrays.items()
         if self.parts.walls:
             yield from self.parts.walls.own_arrays.items()
 

@@ -16,7 +16,7 @@ from warpsph_kernels.clock import BLOCK, LIMITS, StepLimits, make_clock_kernels
 from warpsph.particles.launch import Pass
 from warpsph.particles.state import host_view
 from warpsph.physics.boundary import WallModel
-from warpsph.physics.fluid import smoothing_length, step_viscosity
+from warpsph.physics.fluid import material, padded, smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, WALL, Parts
 from warpsph.solver.system import StepReport
@@ -130,7 +130,8 @@ class Stepper:
     def lists_expire(self, dt: float) -> bool:
         """Tell whether a particle may outrun the neighbour lists within the step."""
         reach = self._read(clock_kernels.SPEED) + self._read(clock_kernels.ACCELERATION) * dt
-        return self._search.must_rebuild(self._read(clock_kernels.DISPLACEMENT), reach, dt)
+        displacement = self._read(clock_kernels.DISPLACEMENT) + self._fluid.largest_shift
+        return self._search.must_rebuild(displacement, reach, dt)
 
     def renew_lists(self) -> None:
         """Sort the particles and list their neighbours anew."""
@@ -208,7 +209,7 @@ class Stepper:
     def _bind_clock(self, scene: Scene) -> None:
         a = self._parts.assembly
         arithmetic, state, scratch = a.options.arithmetic, a.state, a.scratch
-        kernels = make_clock_kernels(arithmetic)
+        kernels = make_clock_kernels(arithmetic, a.options.state)
         self._fluid_blocks = -(-a.layout.fluids // BLOCK)
         self._wall_blocks = -(-a.layout.walls // BLOCK)
         rows = max(self._fluid_blocks + self._wall_blocks, 1)
@@ -245,7 +246,8 @@ def step_limits(scene: Scene, sound_speed: float) -> StepLimits:
     limits.cfl = scene.time.cfl
     limits.smoothing_length = smoothing_length(scene)
     limits.sound_speed = sound_speed
-    limits.gamma = scene.numerics.state.gamma
+    limits.rest_density = material(scene).density
+    limits.state_parameters = clock_kernels.STATE_PARAMETERS(*padded(scene.numerics.state.numbers))
     limits.viscosity = step_viscosity(scene, sound_speed)
     limits.max_step = scene.time.max_step or NO_LIMIT
     return limits

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from typing import TYPE_CHECKING
 
-from warpsph.scene.checks.common import no_such_axis, repeated_problems
+from warpsph.laws.states import BUILT_IN_STATES, STATE_LAWS
+from warpsph.laws.viscosities import VISCOSITY_LAWS
+from warpsph.scene.checks.common import expression_problems, no_such_axis, repeated_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
 if TYPE_CHECKING:
+    from warpsph.laws.states import StateLaw
+    from warpsph.laws.viscosities import ViscosityLaw
+    from warpsph.scene.fluid_models import CustomState, CustomViscosity, NewtonianLaw
     from warpsph.scene.schema import Scene
 
 MAX_FRAMES = 100_000
@@ -105,8 +110,62 @@ def _numerics_problems(scene: Scene) -> Iterator[Problem]:
             "expected_speed with sound_speed: auto, or sound_speed alone",
             numerics.expected_speed,
         )
-    if numerics.viscosity.type == "laminar":
-        for name, fluid in scene.fluids.items():
-            if fluid.kinematic_viscosity == 0.0:
-                key = f"fluids.{name}.kinematic_viscosity"
-                yield Problem.at(key, "laminar viscosity needs it", "a number greater than 0, m2/s")
+    if numerics.pressure_form == "riemann" and numerics.viscosity.type == "artificial":
+        message = "the Riemann solver of pressure_form: riemann takes the place of an artificial viscosity"
+        yield Problem.at("numerics.viscosity.type", message, "any other viscosity, or none", "artificial")
+    if numerics.density == "summation" and numerics.density_diffusion.type != "none":
+        message = "a density that is summed obeys no equation that could be diffused"
+        yield Problem.at("numerics.density_diffusion.type", message, "none", numerics.density_diffusion.type)
+    if numerics.state.type == "custom":
+        yield from _custom_problems("numerics.state", numerics.state, STATE_LAWS, BUILT_IN_STATES)
+    if numerics.viscosity.type == "custom":
+        yield from _custom_problems("numerics.viscosity", numerics.viscosity, VISCOSITY_LAWS, ())
+    yield from _viscosity_problems(scene)
+
+
+def _custom_problems(
+    key: str,
+    model: CustomState | CustomViscosity,
+    laws: Mapping[str, StateLaw] | Mapping[str, ViscosityLaw],
+    built_in: Collection[str],
+) -> Iterator[Problem]:
+    added = [name for name in laws if name not in built_in]
+    if model.law not in added:
+        allowed = ", ".join(added) or "none is registered"
+        yield Problem.at(f"{key}.law", "no such law has been registered", allowed, model.law)
+    elif set(model.parameters) != set(laws[model.law].parameters):
+        allowed = ", ".join(laws[model.law].parameters) or "no parameters"
+        message = f"these are not the parameters of {model.law}"
+        yield Problem.at(f"{key}.parameters", message, allowed, dict(model.parameters))
+
+
+_NEED_VISCOSITY = ("laminar", "sub_particle_scale")
+
+
+def _viscosity_problems(scene: Scene) -> Iterator[Problem]:
+    viscosity = scene.numerics.viscosity
+    if viscosity.type == "viscous_stress" and viscosity.law.type == "newtonian":
+        yield from _newtonian_problems(scene, viscosity.law)
+    elif viscosity.type in _NEED_VISCOSITY:
+        yield from _missing_viscosity(scene, f"{viscosity.type} viscosity")
+
+
+def _newtonian_problems(scene: Scene, law: NewtonianLaw) -> Iterator[Problem]:
+    key = "numerics.viscosity.law"
+    if law.viscosity is not None:
+        yield from expression_problems(f"{key}.viscosity", law.viscosity, AXES[: scene.dimension])
+        if law.largest is None:
+            message = "a viscosity that varies needs a cap, which limits the step"
+            yield Problem.at(f"{key}.largest", message, "a number greater than 0, Pa s")
+    elif law.largest is not None:
+        message = "it has no effect without a viscosity that varies"
+        yield Problem.at(f"{key}.largest", message, "null", law.largest)
+    else:
+        yield from _missing_viscosity(scene, "a newtonian viscous_stress")
+
+
+def _missing_viscosity(scene: Scene, what: str) -> Iterator[Problem]:
+    for name, fluid in scene.fluids.items():
+        if fluid.kinematic_viscosity == 0.0:
+            key = f"fluids.{name}.kinematic_viscosity"
+            yield Problem.at(key, f"{what} needs it", "a number greater than 0, m2/s")
