@@ -18,7 +18,8 @@ ROOT = Path(__file__).parents[1]
 LAYERS: tuple[tuple[str, ...], ...] = (
     ("warpsph.laws",),
     ("warpsph.scene", "warpsph.frame"),
-    ("warpsph.sampling", "warpsph.output", "warpsph.probes", "warpsph.particles"),
+    ("warpsph.sampling", "warpsph.output", "warpsph.particles"),
+    ("warpsph.probes",),
     ("warpsph.physics", "warpsph.comparison"),
     ("warpsph.solver", "warpsph.rendering"),
     ("warpsph.validation",),

@@ -95,6 +95,8 @@ PARTS = (
     ("Rotation", "`rotate` of a transform", "Rotation"),
     ("Table in the scene", "`table` of a series reference", "InlineTable"),
     ("Table in a file", "`table` of a series reference", "FileTable"),
+    ("Profile in the scene", "`table` of a profile reference", "InlineProfile"),
+    ("Profile in a file", "`table` of a profile reference", "FileProfile"),
 )
 
 

@@ -15,17 +15,26 @@ FIELD_UNITS: dict[str, str] = {
     "mass": "kg",
     "volume": "m3",
     "force": "N",
+    "vorticity": "1/s",
+    "displacement": "m",
+    "reaction": "N",
+    "cauchy_stress": "Pa",
+    "von_mises": "Pa",
+    "strain_energy": "J",
+    "hourglass_energy": "J",
+    "contact_energy": "J",
+    "work": "J",
+    "dissipated": "J",
 }
 """Units of the fields in three dimensions; see `field_unit` for the plane."""
 
-_PER_METRE_DEPTH = {"mass": "kg/m", "volume": "m2", "force": "N/m"}
+_PER_METRE_DEPTH = {"kg": "kg/m", "m3": "m2", "N": "N/m", "J": "J/m"}
 
 
 def field_unit(name: str, dimension: int) -> str:
     """Unit of a field; in 2D extensive fields are per metre of depth. Unknown fields are pure numbers."""
-    if dimension == 2 and name in _PER_METRE_DEPTH:
-        return _PER_METRE_DEPTH[name]
-    return FIELD_UNITS.get(name, "1")
+    unit = FIELD_UNITS.get(name, "1")
+    return _PER_METRE_DEPTH.get(unit, unit) if dimension == 2 else unit
 
 
 @dataclass(frozen=True)

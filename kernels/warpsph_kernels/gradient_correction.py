@@ -3,7 +3,7 @@
 `renormalised`: each particle's kernel gradient is multiplied by the inverse L_a of its moment matrix (Randles &
 Libersky 1996; Bonet & Lok 1999). The pressure force of a pair of fluid particles is (p_a L_a + p_b L_b) grad W, which
 changes its sign when the pair is exchanged; pairs with walls stay as they are. `finite_particle`: value and gradient
-together solve a linear system (Liu, Xie & Liu 2005), exact for linear fields whatever the support, without any symmetry.
+together solve a linear system (Liu, Xie & Liu 2005), exact for linear fields on any support, without any symmetry.
 """
 
 from functools import cache

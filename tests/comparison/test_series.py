@@ -110,3 +110,11 @@ def test_value_that_is_no_number_never_holds() -> None:
 def test_zero_reference_relative_to_itself_never_holds() -> None:
     row = compared(np.zeros_like(TIMES), **table([0.0, 2.0], [-1.0, 1.0]), at=[1.0], bound=10.0)
     assert row.holds is False
+
+
+def test_an_unrolled_angle_goes_on_where_it_begins_anew() -> None:
+    """3 rad/s for 2 s is 6 rad, which atan2 tells as 6 - 2 pi."""
+    wrapped = (3.0 * TIMES + np.pi) % (2.0 * np.pi) - np.pi
+    expected = table([0.5, 1.5, 2.0], [1.5, 4.5, 6.0])
+    assert compared(wrapped, **expected, unroll=2.0 * np.pi, bound=1e-9).holds is True
+    assert compared(wrapped, **expected, bound=1e-9).holds is False

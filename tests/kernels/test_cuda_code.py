@@ -12,12 +12,30 @@ from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.gradient_correction import make_finite_particle_kernels, make_renormalised_kernels
 from warpsph_kernels.particle_order import make_order_kernels
 from warpsph_kernels.stress import make_stress_kernels
+from warpsph_kernels.structure import StructureOptions, make_stress_kernel, make_structure_kernels
+from warpsph_kernels.structure_survey import make_observation_kernel, make_survey_kernel
 from warpsph_kernels.summation import make_sum_density
 from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
 SM_80 = 80
 CONCEPTS = ("stress", "density_gradient", "order", "summation", "gradient_correction")
+
+
+@pytest.mark.parametrize(
+    ("dimension", "precision", "law"), [(2, "double", "neo_hookean"), (3, "single", "split_neo_hookean")]
+)
+def test_structure_code_compiles_for_cuda(tmp_path, dimension, precision, law):
+    arithmetic = Arithmetic(dimension, precision)
+    options = StructureOptions(
+        arithmetic=arithmetic, moving_clamps=True, loads=2, damped=True, contact=False, thin=True
+    )
+    make_structure_kernels(options)
+    for make in (make_stress_kernel, make_survey_kernel, make_observation_kernel):
+        make(options, law, False)
+    for name in (options.module, options.module_of(law, False)):
+        wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
+    assert len(list(tmp_path.glob("*.ptx"))) == 2
 
 
 @pytest.mark.parametrize(

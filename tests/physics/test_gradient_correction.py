@@ -28,7 +28,7 @@ def displace(sim: Simulation) -> np.ndarray:
     """Put the particles off the lattice by up to 0.15 spacings, and return where they are."""
     position = sim.array("position").numpy()
     position += np.random.default_rng(4).uniform(-0.015, 0.015, position.shape)
-    sim._stepper.renew_lists()
+    sim.system._stepper.renew_lists()
     return sim.array("position").numpy()
 
 
@@ -45,9 +45,9 @@ def test_the_divergence_of_a_linear_velocity_is_exact(dimension, form):
     position = displace(sim)
     matrix = np.array([[0.3, 0.1, 0.0], [-0.2, 0.4, 0.0], [0.0, 0.0, 0.1]])[:dimension, :dimension]
     sim.array("velocity_volume").numpy()[:, :-1] = position @ matrix.T
-    sim._parts.fluid.synchronise()
-    sim._parts.fluid.update_density()
-    rate = sim._parts.assembly.state.density_rate.numpy()
+    sim.system.parts.fluid.synchronise()
+    sim.system.parts.fluid.update_density()
+    rate = sim.system.parts.assembly.state.density_rate.numpy()
     expected = -1000.0 * np.trace(matrix)
     assert rate[has_neighbours(position)] == pytest.approx(expected, rel=1e-10)
 
@@ -55,7 +55,7 @@ def test_the_divergence_of_a_linear_velocity_is_exact(dimension, form):
 def test_the_plain_divergence_misses_the_surface():
     # What the correction is for: across a flat surface about half of the derivative is missing.
     sim = drop_in(2, "plain", ["0.3 * x", "0.4 * y"])
-    rate = sim._parts.assembly.state.density_rate.numpy()
+    rate = sim.system.parts.assembly.state.density_rate.numpy()
     assert np.abs(rate + 700.0).max() > 200.0
 
 
@@ -66,8 +66,8 @@ def test_the_finite_particle_gradient_of_a_linear_pressure_is_exact(dimension):
     position = displace(sim)
     slope = np.array([3.0, -2.0, 1.0])[:dimension]
     sim.array("density_deviation").numpy()[:] = position @ slope
-    sim._parts.fluid.synchronise()
-    sim._parts.fluid.accelerate()
+    sim.system.parts.fluid.synchronise()
+    sim.system.parts.fluid.accelerate()
     density = 1000.0 + position @ slope
     expected = -(sim.sound_speed**2) * slope / density[:, None]
     kept = has_neighbours(position)

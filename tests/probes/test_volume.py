@@ -20,3 +20,13 @@ def test_particles_that_are_gone_are_counted():
     probe = probe_of(scene_with({"type": "volume"}, 2))
     probe.start(frame_of(fluid(position)))
     assert probe.evaluate(frame_of(fluid(position[3:])))[1:] == (len(position) - 3, 3.0)
+
+
+def test_only_what_lies_in_the_region_counts():
+    """A quarter of the block lies in the region; what leaves it counts as gone."""
+    position = lattice([0.0, 0.0], [1.0, 1.0])
+    region = {"min": [0.0, 0.0], "max": [0.5, 0.5]}
+    probe = probe_of(scene_with({"type": "volume", "region": region}, 2))
+    probe.start(frame_of(fluid(position)))
+    assert probe.evaluate(frame_of(fluid(position))) == pytest.approx((0.25, 25.0, 0.0))
+    assert probe.evaluate(frame_of(fluid(position + np.array([0.1, 0.0])))) == pytest.approx((0.2, 20.0, 5.0))

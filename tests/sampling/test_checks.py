@@ -50,7 +50,7 @@ def test_fluid_that_stands_above_an_open_tank_is_in_no_wall() -> None:
 def test_overlapping_fluids() -> None:
     (problem,) = problems_of({"water": WATER, "oil": box([0.8, 0.2], [1.5, 0.5])}, {"tank": TANK})
     assert problem.key == "fluids.oil.shape"
-    assert problem.message == "6 of its particles lie in the fluid 'water', such as (0.85, 0.25)"
+    assert problem.message == "6 of its particles lie in fluids.water, such as (0.85, 0.25)"
 
 
 def test_all_conflicts_are_told_at_once() -> None:

@@ -36,7 +36,8 @@ def moving(motions: list[dict[str, Any]], **more: Any) -> Scene:
 
 
 def motion_of(motions: list[dict[str, Any]]) -> RigidMotion:
-    return rigid_motion(moving(motions), "body")
+    scene = moving(motions)
+    return rigid_motion(scene, scene.boundaries["body"].motion, "boundaries.body.motion")
 
 
 @pytest.mark.parametrize("motions", COMPOSED.values(), ids=COMPOSED)

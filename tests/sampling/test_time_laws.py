@@ -51,6 +51,13 @@ def test_a_ramp_starts_without_velocity_or_acceleration_and_ends_in_the_sinusoid
     assert ramped(0.8 - 1e-6) == pytest.approx(plain(0.8), abs=1e-3)
 
 
+def test_a_sliding_surface_has_a_velocity_and_stays() -> None:
+    law = displacement(type="sliding", velocity=[2.0, 0.0], start=1.0, end=3.0).translation
+    assert law(2.0) == pytest.approx(np.array([[0.0] * 3, [2.0, 0.0, 0.0], [0.0] * 3]))
+    assert law(0.5) == pytest.approx(np.zeros((3, 3)))
+    assert law(3.5) == pytest.approx(np.zeros((3, 3)))
+
+
 def test_linear_motion_runs_from_start_to_end() -> None:
     law = displacement(type="linear", velocity=[0.0, 2.0], start=1.0, end=3.0).translation
     assert law(0.5) == pytest.approx(np.zeros((3, 3)))

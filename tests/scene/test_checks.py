@@ -105,7 +105,7 @@ TOGETHER = [
      "boundaries.tank.open", "a sphere has no faces"),
     (["boundaries.tank.side=solid"], "boundaries.tank.open", "a solid has no faces"),
     (["references.energy.high=null"], "references.energy", "neither low nor high"),
-    (["fluids={}"], "fluids", "few"),
+    (["fluids={}"], "fluids", "neither fluids nor structures"),
 ]  # fmt: skip
 
 

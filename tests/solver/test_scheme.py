@@ -89,7 +89,7 @@ def test_wall_force_is_the_opposite_of_what_the_fluid_receives(form):
     sim = Simulation(still_tank(numerics={"precision": "double"} | form), device="cpu")
     for _ in range(5):
         sim.step()
-    parts = sim._parts
+    parts = sim.system.parts
     water, tank = sim.frame(["mass", "force"], ordered=False).sets
     parts.fluid.accelerate()
     acceleration = parts.assembly.state.acceleration.numpy()[: len(water.fields["mass"])]
@@ -211,7 +211,7 @@ def test_particles_that_left_do_not_limit_the_step():
     while not sim.removed_count:
         sim.step()
     sim.step()
-    assert sim.largest_speed < 1.0
+    assert sim.extremes["speed"] < 1.0
     assert sim.step().dt > 1.3 * first
 
     # Nor does a fault name one of them: the sound speed is 10 m/s, and it is the living particle that is too fast.

@@ -7,7 +7,8 @@ import pytest
 from builders import still_tank
 
 from warpsph.solver.errors import SimulationDiverged
-from warpsph.solver.simulation import ARRAYS, Simulation
+from warpsph.solver.fluid_system import ARRAYS
+from warpsph.solver.simulation import Simulation
 
 
 def simulation(**changes) -> Simulation:

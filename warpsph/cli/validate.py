@@ -58,6 +58,7 @@ def validate(
     from warpsph.cli.consoles import plain_console
     from warpsph.cli.tables import validation_table
     from warpsph.cli.warp_runtime import start_warp
+    from warpsph.validation.convergence import judged
     from warpsph.validation.runner import run_case
 
     spacings = parse_spacings(resolutions)
@@ -69,6 +70,7 @@ def validate(
         for number, case in enumerate(cases, start=1):
             progress.print(f"{number}/{len(cases)} {case.scene.name} at spacing {case.scene.spacing:g} m")
             result = run_case(case, out, runner_with(progress, quiet, device, threads))
+            result = judged(result, results, cases)
             results.append(result)
             if json_lines:
                 print_json_lines(result)

@@ -8,11 +8,18 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from warpsph.comparison.features import compare_feature
 from warpsph.comparison.fields import FieldSample, compare_field, field_samples, fields_needed
 from warpsph.comparison.limits import compare_limit
 from warpsph.comparison.row import Comparison, History
 from warpsph.comparison.series import compare_series
-from warpsph.scene.references import FieldReference, LimitReference, SeriesReference
+from warpsph.scene.references import (
+    FeatureReference,
+    FieldReference,
+    LimitReference,
+    ProfileReference,
+    SeriesReference,
+)
 from warpsph.scene.schema import Scene
 
 __all__ = ["Comparison", "FieldSample", "History", "compare_run", "field_samples", "fields_needed"]
@@ -33,8 +40,10 @@ def compare_run(
         match reference:
             case SeriesReference():
                 rows.append(compare_series(name, reference, scene, history))
-            case FieldReference():
+            case FieldReference() | ProfileReference():
                 rows.append(compare_field(name, reference, scene, samples))
+            case FeatureReference():
+                rows.append(compare_feature(name, reference, scene, history))
             case LimitReference():
                 rows.append(compare_limit(name, reference, scene, history))
     return tuple(rows)

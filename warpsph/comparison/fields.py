@@ -1,4 +1,4 @@
-"""Fields of particles against expressions, taken from frames as they pass."""
+"""Fields against expressions at particles, and against tables along lines, taken from frames as they pass."""
 
 from __future__ import annotations
 
@@ -8,17 +8,20 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from warpsph.comparison.profiles import INTERPOLATED_FROM, profile_values
 from warpsph.comparison.row import Comparison, Sample, relative_errors, representative
 from warpsph.frame import Frame, SetFrame
 from warpsph.scene.expressions import evaluate
-from warpsph.scene.references import FieldReference
+from warpsph.scene.references import FieldReference, ProfileReference, bound_at
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
+
+FrameReference = FieldReference | ProfileReference
 
 
 @dataclass(frozen=True)
 class FieldSample:
-    """A field against its expression at one frame, reduced over the particles in the norm of the reference.
+    """A field against its reference at one frame, reduced over particles or points in the norm of the reference.
 
     `asked_time` is the time that the reference names [s], `frame_time` that of the frame.
     """
@@ -33,24 +36,27 @@ class FieldSample:
 
 def fields_needed(scene: Scene) -> frozenset[str]:
     """Fields that every frame must carry for `field_samples`, beside `position`."""
-    return frozenset(_stored_name(reference.field) for _, reference in _field_references(scene))
+    references = [reference for _, reference in _frame_references(scene)]
+    own = {_stored_name(reference.field) for reference in references}
+    along_lines = any(isinstance(reference, ProfileReference) for reference in references)
+    return frozenset(own | set(INTERPOLATED_FROM if along_lines else ()))
 
 
 def field_samples(scene: Scene, frame: Frame) -> tuple[FieldSample, ...]:
     """What the field references of the scene need from this frame; empty if none asks for a time near it."""
     half_interval = 0.5 / scene.time.frame_rate * (1.0 + 1e-6)
     return tuple(
-        _sample(name, reference, asked, frame)
-        for name, reference in _field_references(scene)
+        _sample(name, reference, scene, asked, frame)
+        for name, reference in _frame_references(scene)
         for asked in _asked_times(reference, scene)
         if abs(frame.time - asked) <= half_interval
     )
 
 
 def compare_field(
-    name: str, reference: FieldReference, scene: Scene, samples: Iterable[FieldSample]
+    name: str, reference: FrameReference, scene: Scene, samples: Iterable[FieldSample]
 ) -> Comparison:
-    """The row of a field reference, from the samples of all frames; a time without a frame is no number."""
+    """The row of a field or profile reference, from the samples of all frames; a time without a frame is no number."""
     asked = _asked_times(reference, scene)
     own = [sample for sample in samples if sample.reference == name]
     nearest = tuple(_nearest(own, time) for time in asked)
@@ -59,12 +65,12 @@ def compare_field(
     missing = [time for time, sample in zip(asked, nearest, strict=True) if not math.isfinite(sample.error)]
     return Comparison(
         quantity=name,
-        compared=f"{reference.set}.{reference.field}",
+        compared=_compared(reference),
         norm=reference.norm,
         value=value,
         reference=target,
         error=error,
-        bound=reference.bound,
+        bound=bound_at(reference.bound, scene.spacing),
         uncertainty=reference.uncertainty,
         source=reference.source,
         samples=nearest,
@@ -72,22 +78,35 @@ def compare_field(
     )
 
 
-def _field_references(scene: Scene) -> list[tuple[str, FieldReference]]:
-    return [(name, r) for name, r in scene.references.items() if isinstance(r, FieldReference)]
+def _compared(reference: FrameReference) -> str:
+    if isinstance(reference, FieldReference):
+        return f"{reference.set}.{reference.field}"
+    return f"{reference.field} along {reference.axis}"
 
 
-def _asked_times(reference: FieldReference, scene: Scene) -> tuple[float, ...]:
+def _frame_references(scene: Scene) -> list[tuple[str, FrameReference]]:
+    return [(n, r) for n, r in scene.references.items() if isinstance(r, FieldReference | ProfileReference)]
+
+
+def _asked_times(reference: FrameReference, scene: Scene) -> tuple[float, ...]:
     return reference.at if reference.at is not None else (scene.time.end,)
 
 
-def _sample(name: str, reference: FieldReference, asked: float, frame: Frame) -> FieldSample:
-    particles = frame.set_named(reference.set)
-    position = particles.fields["position"]
-    coordinates = dict(zip(AXES, position.T, strict=False))
-    expected = evaluate(reference.expression, {**coordinates, "t": frame.time})
-    values = _field_values(particles, reference.field)
+def _sample(name: str, reference: FrameReference, scene: Scene, asked: float, frame: Frame) -> FieldSample:
+    if isinstance(reference, ProfileReference):
+        values, expected = profile_values(reference, scene, frame)
+    else:
+        values, expected = _particle_values(reference, frame)
     errors = relative_errors(values, expected, reference.relative_to)
     return FieldSample(name, asked, frame.time, *representative(values, expected, errors, reference.norm))
+
+
+def _particle_values(reference: FieldReference, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
+    """The field at each particle of the set, and its exact values there."""
+    particles = frame.set_named(reference.set)
+    coordinates = dict(zip(AXES, particles.fields["position"].T, strict=False))
+    expected = evaluate(reference.expression, {**coordinates, "t": frame.time})
+    return _field_values(particles, reference.field), expected
 
 
 def _stored_name(field: str) -> str:

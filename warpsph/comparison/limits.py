@@ -8,7 +8,7 @@ import numpy as np
 
 from warpsph.comparison.row import Comparison, History
 from warpsph.output.probes_csv import TIME_COLUMN
-from warpsph.scene.references import LimitReference
+from warpsph.scene.references import FeatureReference, LimitReference
 from warpsph.scene.schema import Scene
 
 
@@ -18,11 +18,7 @@ def compare_limit(name: str, reference: LimitReference, scene: Scene, history: H
     `value` is the value that comes nearest to breaking a limit or breaks it most, `reference` that limit. A
     run that ended before the window did, or a value that is no number, does not hold.
     """
-    first, last = reference.window or (0.0, scene.time.end)
-    time = history[TIME_COLUMN]
-    slack = 1e-9 * max(1.0, last)
-    values = history[reference.column][(time >= first - slack) & (time <= last + slack)]
-    reached = time.size > 0 and time[-1] >= last - _sampling_interval(scene) - slack
+    _, values, reached = window_of(reference, scene, history)
     value, limit, violation = _worst(values, reference) if reached and values.size else (math.nan,) * 3
     return Comparison(
         quantity=name,
@@ -35,8 +31,24 @@ def compare_limit(name: str, reference: LimitReference, scene: Scene, history: H
         uncertainty=0.0,
         source=reference.source,
         error_unit=unit_of(reference.column),
-        note=None if reached else f"the run ended before t = {last:.6g} s",
+        note=None if reached else f"the run ended before t = {_window(reference, scene)[1]:.6g} s",
     )
+
+
+def window_of(
+    reference: LimitReference | FeatureReference, scene: Scene, history: History
+) -> tuple[np.ndarray, np.ndarray, bool]:
+    """Times [s] and values of the column within the window, and whether the run reached its end."""
+    first, last = _window(reference, scene)
+    time = history[TIME_COLUMN]
+    slack = 1e-9 * max(1.0, last)
+    within = (time >= first - slack) & (time <= last + slack)
+    reached = time.size > 0 and time[-1] >= last - _sampling_interval(scene) - slack
+    return time[within], history[reference.column][within], bool(reached)
+
+
+def _window(reference: LimitReference | FeatureReference, scene: Scene) -> tuple[float, float]:
+    return reference.window or (0.0, scene.time.end)
 
 
 def unit_of(column: str) -> str:

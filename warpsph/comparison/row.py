@@ -5,11 +5,11 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
-from warpsph.scene.references import Norm
+from warpsph.scene.references import Norm, RelativeTo
 
 History = Mapping[str, np.ndarray]
 """Probe columns by name, each of shape (samples,), with the times [s] under `time[s]`."""
@@ -82,11 +82,15 @@ def finite_or_none(number: float) -> float | None:
     return float(number) if math.isfinite(number) else None
 
 
-def relative_errors(
-    values: np.ndarray, references: np.ndarray, relative_to: Literal["value"] | float
-) -> np.ndarray:
-    """Signed errors over the reference values themselves or over a fixed scale in their unit."""
-    scale = np.abs(references) if relative_to == "value" else relative_to
+def relative_errors(values: np.ndarray, references: np.ndarray, relative_to: RelativeTo) -> np.ndarray:
+    """Signed errors over the reference values themselves, their largest magnitude, or a scale in their unit."""
+    match relative_to:
+        case "value":
+            scale = np.abs(references)
+        case "peak":
+            scale = np.max(np.abs(references), initial=0.0)
+        case _:
+            scale = np.asarray(relative_to)
     with np.errstate(divide="ignore", invalid="ignore"):
         return (values - references) / scale
 

@@ -15,7 +15,7 @@ from warpsph.comparison.row import (
     representative,
 )
 from warpsph.output.probes_csv import TIME_COLUMN
-from warpsph.scene.references import InlineTable, SeriesReference
+from warpsph.scene.references import InlineTable, SeriesReference, bound_at
 from warpsph.scene.schema import Scene
 from warpsph.scene.tables import read_columns
 
@@ -57,7 +57,7 @@ def compare_series(name: str, reference: SeriesReference, scene: Scene, history:
     With `lag: fit` the reference is shifted by the lag that makes the root mean square of the row's errors
     least: the run at t + lag then stands against the reference at t.
     """
-    computed = Series(history[TIME_COLUMN], history[reference.column])
+    computed = Series(history[TIME_COLUMN], _column(reference, history))
     expected = _expected(reference, scene)
     lag, note = _fitted_lag(computed, expected, reference) if reference.lag == "fit" else (None, None)
     pairs = _lagged(computed, expected, reference, lag or 0.0)
@@ -70,13 +70,18 @@ def compare_series(name: str, reference: SeriesReference, scene: Scene, history:
         value=value,
         reference=target,
         error=error,
-        bound=reference.bound,
+        bound=bound_at(reference.bound, scene.spacing),
         uncertainty=reference.uncertainty,
         source=reference.source,
         lag=lag,
         samples=tuple(Sample(*row) for row in np.column_stack(columns).tolist()),
         note=_why_missing(pairs, computed) or note,
     )
+
+
+def _column(reference: SeriesReference, history: History) -> np.ndarray:
+    values = history[reference.column]
+    return values if reference.unroll is None else np.unwrap(values, period=reference.unroll)
 
 
 def read_table(reference: SeriesReference, scene: Scene) -> Series:

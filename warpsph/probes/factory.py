@@ -3,11 +3,17 @@
 from collections.abc import Callable
 from typing import Any
 
+from warpsph.probes.displacement import DisplacementProbe
 from warpsph.probes.energy import EnergyProbe
 from warpsph.probes.force import ForceProbe
 from warpsph.probes.front import FrontProbe
+from warpsph.probes.momentum import MomentumProbe
 from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
+from warpsph.probes.reach import ReachProbe
+from warpsph.probes.reaction import ReactionProbe
+from warpsph.probes.rotation import RotationProbe
+from warpsph.probes.structure_energy import StructureEnergyProbe
 from warpsph.probes.volume import VolumeProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
 from warpsph.probes.water_level import WaterLevelProbe
@@ -16,12 +22,18 @@ from warpsph.scene.schema import Scene
 
 PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "front": FrontProbe,
+    "reach": ReachProbe,
     "water_level": WaterLevelProbe,
     "wall_pressure": WallPressureProbe,
     "point": PointProbe,
     "force": ForceProbe,
     "energy": EnergyProbe,
     "volume": VolumeProbe,
+    "displacement": DisplacementProbe,
+    "rotation": RotationProbe,
+    "reaction": ReactionProbe,
+    "structure_energy": StructureEnergyProbe,
+    "momentum": MomentumProbe,
 }
 
 

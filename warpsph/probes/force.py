@@ -3,6 +3,7 @@
 import numpy as np
 
 from warpsph.frame import Frame
+from warpsph.probes.mechanics import resultant
 from warpsph.probes.probe import Probe
 from warpsph.scene.probes import ForceProbe as ForceSpec
 from warpsph.scene.schema import Scene
@@ -30,13 +31,4 @@ class ForceProbe(Probe):
         if self._about is None:
             raise ValueError("start() comes before evaluate()")
         fields = frame.set_named(self._boundary).fields
-        force = np.asarray(fields["force"], dtype=np.float64)
-        torque = _cross(fields["position"] - self._about, force)
-        return (*map(float, force.sum(axis=0)), *map(float, torque.sum(axis=0)))
-
-
-def _cross(arm: np.ndarray, force: np.ndarray) -> np.ndarray:
-    """Torques (n, 1) about z in the plane, (n, 3) in space."""
-    if arm.shape[1] == 2:
-        return arm[:, :1] * force[:, 1:] - arm[:, 1:] * force[:, :1]
-    return np.cross(arm, force)
+        return resultant(fields["position"], fields["force"], self._about)

@@ -53,16 +53,16 @@ def wall_conflict_problems(
             yield Problem.at(f"fluids.{fluid}.shape", message, allowed)
 
 
-def overlap_problems(fluids: Mapping[str, np.ndarray], spacing: float) -> Iterator[Problem]:
-    """Fluids that lie in each other."""
-    for (first, one), (second, other) in combinations(fluids.items(), 2):
+def overlap_problems(section: str, sets: Mapping[str, np.ndarray], spacing: float) -> Iterator[Problem]:
+    """Sets of a section of the scene that lie in each other."""
+    for (first, one), (second, other) in combinations(sets.items(), 2):
         low, high = one.min(axis=0) - spacing, one.max(axis=0) + spacing
         candidates = other[np.all((other > low) & (other < high), axis=1)]
         nearest, _ = cKDTree(one).query(candidates, distance_upper_bound=_OVERLAP * spacing, workers=-1)
         common = candidates[np.isfinite(nearest)]
         if len(common):
-            message = f"{len(common)} of its particles lie in the fluid {first!r}, such as {_at(common[0])}"
-            yield Problem.at(f"fluids.{second}.shape", message, "fluids side by side")
+            message = f"{len(common)} of its particles lie in {section}.{first}, such as {_at(common[0])}"
+            yield Problem.at(f"{section}.{second}.shape", message, f"{section} side by side")
 
 
 def _period_problems(scene: Scene) -> Iterator[Problem]:

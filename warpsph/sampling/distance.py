@@ -22,8 +22,24 @@ from warpsph.scene.shapes import (
     Union,
 )
 
+_GRADIENT_STEP = 1e-3
+
 DistanceFunction = Callable[[np.ndarray], np.ndarray]
 """Signed distance (n,) [m] of points (n, dimension) [m]."""
+
+
+def surface_normals(shape: Shape, points: np.ndarray, spacing: float) -> np.ndarray:
+    """Unit vectors (n, dim) along which the distance from a shape's surface grows fastest at points (n, dim) [m].
+
+    The step of the central difference is a small part of the spacing [m].
+    """
+    dim, step = points.shape[1], _GRADIENT_STEP * spacing
+    slopes = [
+        signed_distance(shape, points + step * e) - signed_distance(shape, points - step * e)
+        for e in np.eye(dim)
+    ]
+    gradient = np.stack(slopes, axis=1)
+    return gradient / np.maximum(np.linalg.norm(gradient, axis=1, keepdims=True), np.finfo(float).tiny)
 
 
 @singledispatch

@@ -10,6 +10,7 @@ import numpy as np
 
 from warpsph.sampling.sets import SampledSet
 from warpsph.sampling.time_laws import Displacement, displacement_of
+from warpsph.scene.motion import Motion
 from warpsph.scene.placement import cross_matrix, rotation_matrix
 from warpsph.scene.schema import Scene
 
@@ -90,17 +91,21 @@ def rigid_motions(scene: Scene) -> dict[str, RigidMotion]:
 
     Raises SceneError where the file of a table cannot be used.
     """
-    return {name: rigid_motion(scene, name) for name, boundary in scene.boundaries.items() if boundary.motion}
+    return {
+        name: rigid_motion(scene, boundary.motion, f"boundaries.{name}.motion")
+        for name, boundary in scene.boundaries.items()
+        if boundary.motion
+    }
 
 
-def rigid_motion(scene: Scene, name: str) -> RigidMotion:
-    """The motion of a boundary that moves: its motions one after the other, centres and axes fixed in space.
+def rigid_motion(scene: Scene, motions: Sequence[Motion], key: str) -> RigidMotion:
+    """Motions one after the other, centres and axes fixed in space; `key` is where they stand in the scene.
 
     Raises SceneError where the file of a table cannot be used.
     """
     displacements = [
-        displacement_of(motion, scene.base_directory, f"boundaries.{name}.motion.{index}")
-        for index, motion in enumerate(scene.boundaries[name].motion)
+        displacement_of(motion, scene.base_directory, f"{key}.{index}")
+        for index, motion in enumerate(motions)
     ]
 
     def pose_at(time: float) -> Pose:

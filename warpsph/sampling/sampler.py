@@ -13,7 +13,7 @@ from warpsph.sampling.checks import (
     wall_conflict_problems,
 )
 from warpsph.sampling.contact import clear_of_wall
-from warpsph.sampling.fluids import initial_pressure, initial_velocity
+from warpsph.sampling.initial_state import initial_field, initial_pressure
 from warpsph.sampling.kinematics import rigid_motions
 from warpsph.sampling.lattice import Lattice, cells_inside
 from warpsph.sampling.packing import CLOSEST, away_from
@@ -28,7 +28,7 @@ Positions = Mapping[str, np.ndarray]
 
 
 def sample(scene: Scene) -> tuple[SampledSet, ...]:
-    """The particles of a scene, fluids first, then boundaries, in the order of the scene.
+    """The particles of a scene: fluids, boundaries, structures, each in the order of the scene.
 
     Raises SceneError with all problems of a scene whose shapes cannot be filled or do not fit together.
     """
@@ -38,11 +38,21 @@ def sample(scene: Scene) -> tuple[SampledSet, ...]:
     cells = {
         name: cells_inside(lattices[name], fluid.shape).positions() for name, fluid in scene.fluids.items()
     }
+    structures = {
+        name: cells_inside(lattices[name], structure.shape).positions()
+        for name, structure in scene.structures.items()
+    }
     _refuse(wall_conflict_problems(scene, cells, walls))
     fluids = {name: _clear_of_walls(scene, points, walls) for name, points in cells.items()}
-    _refuse([*empty_problems("fluids", fluids), *empty_problems("boundaries", walls)])
-    _refuse(overlap_problems(fluids, scene.spacing))
-    return (*_fluid_sets(scene, fluids), *_boundary_sets(scene, walls))
+    kinds = {"fluids": fluids, "boundaries": walls, "structures": structures}
+    _refuse([problem for kind, sets in kinds.items() for problem in empty_problems(kind, sets)])
+    _refuse(overlap_problems("fluids", fluids, scene.spacing))
+    _refuse(overlap_problems("structures", structures, scene.spacing))
+    return (
+        *_fluid_sets(scene, fluids),
+        *_boundary_sets(scene, walls),
+        *_structure_sets(scene, structures),
+    )
 
 
 def _refuse(problems: Iterable[Problem]) -> None:
@@ -77,11 +87,27 @@ def _fluid_sets(scene: Scene, fluids: Positions) -> list[SampledSet]:
             name=name,
             kind="fluid",
             position=position,
-            velocity=initial_velocity(scene.fluids[name], position, f"fluids.{name}"),
-            pressure=initial_pressure(scene.fluids[name], position, scene.gravity, scene.spacing),
+            velocity=initial_field(scene.fluids[name].velocity, position, f"fluids.{name}.velocity"),
+            pressure=initial_pressure(
+                scene.fluids[name], position, scene.gravity, scene.spacing, f"fluids.{name}"
+            ),
             volume=volume,
         )
         for name, position in fluids.items()
+    ]
+
+
+def _structure_sets(scene: Scene, structures: Positions) -> list[SampledSet]:
+    return [
+        SampledSet(
+            name=name,
+            kind="structure",
+            position=position,
+            velocity=initial_field(scene.structures[name].velocity, position, f"structures.{name}.velocity"),
+            pressure=np.zeros(len(position)),
+            volume=scene.spacing**scene.dimension,
+        )
+        for name, position in structures.items()
     ]
 
 

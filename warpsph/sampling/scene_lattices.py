@@ -35,11 +35,12 @@ def lattices_of(scene: Scene) -> Mapping[str, Lattice]:
 
 
 def _shapes_by_rank(scene: Scene) -> Mapping[str, Shape]:
-    """All shapes by the name of their set: tanks first, then fluids, then other boundaries."""
+    """All shapes by the name of their set: tanks first, then fluids, structures, and other boundaries."""
     boundaries = scene.boundaries.items()
     return {
         **{name: boundary.shape for name, boundary in boundaries if boundary.side == "outside"},
         **{name: fluid.shape for name, fluid in scene.fluids.items()},
+        **{name: structure.shape for name, structure in scene.structures.items()},
         **{name: boundary.shape for name, boundary in boundaries if boundary.side != "outside"},
     }
 

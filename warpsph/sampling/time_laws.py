@@ -11,7 +11,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline, make_interp_spline
 
 from warpsph.scene.errors import Problem, SceneError
-from warpsph.scene.motion import Linear, Motion, Sinusoid, SteadyRotation, Table
+from warpsph.scene.motion import Linear, Motion, Sinusoid, Sliding, SteadyRotation, Table
 from warpsph.scene.tables import TableError, read_columns
 from warpsph.scene.types import AXES
 
@@ -58,6 +58,20 @@ def _(motion: Linear, base_directory: Path, key: str) -> Displacement:
     return Displacement(
         angle=_nothing,
         translation=lambda time: np.outer(_time_in_motion(motion, time), _in_space(motion.velocity)),
+        axis=_unit_axis(None),
+        center=np.zeros(3),
+    )
+
+
+@displacement_of.register
+def _(motion: Sliding, base_directory: Path, key: str) -> Displacement:
+    """No displacement at all, and yet a velocity: the second row without the first."""
+    velocity_only = np.array([0.0, 1.0, 0.0])
+    return Displacement(
+        angle=_nothing,
+        translation=lambda time: np.outer(
+            velocity_only * _time_in_motion(motion, time), _in_space(motion.velocity)
+        ),
         axis=_unit_axis(None),
         center=np.zeros(3),
     )
@@ -117,7 +131,7 @@ def _ramp(tau: float, duration: float) -> tuple[float, float, float]:
     return s**3 * (10.0 - 15.0 * s + 6.0 * s**2), slope / duration, curvature / duration**2
 
 
-def _time_in_motion(motion: Linear | SteadyRotation, time: float) -> np.ndarray:
+def _time_in_motion(motion: Linear | Sliding | SteadyRotation, time: float) -> np.ndarray:
     end = np.inf if motion.end is None else motion.end
     moving = motion.start <= time < end
     return np.array([np.clip(time, motion.start, end) - motion.start, float(moving), 0.0])

@@ -29,8 +29,8 @@ _MESSAGES: Mapping[str, str] = {
     "string_too_short": "the text is empty",
     "string_pattern_mismatch": "this is not spelled as a name must be",
 }
-_NAMED_SECTIONS = ("fluids", "boundaries", "probes", "references")
-_OPTIONAL_SECTIONS = ("domain", "numerics", "output", "validation", "description")
+_NAMED_SECTIONS = ("fluids", "boundaries", "structures", "probes", "references")
+_OPTIONAL_SECTIONS = ("domain", "numerics", "contact", "output", "validation", "description")
 _STAND_INS: Mapping[str, Any] = {"name": "unnamed", "time": {"end": 1.0, "frame_rate": 1.0}}
 
 

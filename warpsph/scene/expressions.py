@@ -9,7 +9,9 @@ from typing import Annotated
 
 import numexpr
 import numpy as np
-from pydantic import AfterValidator
+from pydantic import AfterValidator, Field
+
+from warpsph.scene.types import Real
 
 VARIABLES = frozenset("xyzt")
 CONSTANTS: Mapping[str, float] = {"pi": math.pi}
@@ -101,3 +103,6 @@ def _check(expression: str) -> str:
 
 Expression = Annotated[str, AfterValidator(_check)]
 """Arithmetic in x, y, z, t: + - * / % **, comparisons, where(condition, a, b), pi, common functions."""
+
+VectorField = Annotated[tuple[Real | Expression, ...], Field(min_length=2, max_length=3)]
+"""A vector whose components are numbers or expressions in x, y, z."""

@@ -15,7 +15,7 @@ from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.library import shipped_scenes
 from warpsph.scene.motion import Table
 from warpsph.scene.overrides import apply_override, set_value
-from warpsph.scene.references import FileTable, SeriesReference
+from warpsph.scene.references import FileProfile, FileTable
 from warpsph.scene.schema import Scene
 from warpsph.scene.tables import TableError, read_columns
 
@@ -106,16 +106,16 @@ def _choices(shipped: Iterable[str]) -> str:
 
 
 def _table_problems(scene: Scene) -> Iterator[Problem]:
-    """CSV files that the scene names and that do not hold the columns it wants, the time first."""
+    """CSV files that the scene names and that do not hold the columns it wants, the time or position first."""
     for key, file, columns in _wanted_columns(scene):
         try:
-            time, *_ = read_columns(scene.base_directory / file, columns)
+            first, *_ = read_columns(scene.base_directory / file, columns)
         except TableError as error:
             yield Problem.at(key, str(error), f"a CSV file with the columns {', '.join(columns)}", file)
         else:
-            if (np.diff(time) <= 0.0).any():
-                message = f"the times in column {columns[0]!r} do not increase"
-                yield Problem.at(key, message, "increasing times", file)
+            if (np.diff(first) <= 0.0).any():
+                message = f"the numbers in column {columns[0]!r} do not increase"
+                yield Problem.at(key, message, "increasing times or coordinates", file)
 
 
 def _wanted_columns(scene: Scene) -> Iterator[tuple[str, str, list[str]]]:
@@ -129,6 +129,9 @@ def _wanted_columns(scene: Scene) -> Iterator[tuple[str, str, list[str]]]:
                 ]
                 yield f"boundaries.{name}.motion.{index}.file", motion.file, columns
     for name, reference in scene.references.items():
-        if isinstance(reference, SeriesReference) and isinstance(reference.table, FileTable):
-            table = reference.table
-            yield f"references.{name}.table.file", table.file, [table.time, table.value]
+        match getattr(reference, "table", None):
+            case (
+                FileTable(file=file, time=first, value=value)
+                | FileProfile(file=file, position=first, value=value)
+            ):
+                yield f"references.{name}.table.file", file, [first, value]

@@ -111,6 +111,24 @@ class Linear(MotionModel):
         return _checked_end(end, info)
 
 
+class Sliding(MotionModel):
+    """The wall's surface slides in itself at a constant velocity, like a belt or an endless lid: its particles have
+    this velocity and stay where they are. Between `start` and `end`."""
+
+    type: Literal["sliding"] = "sliding"
+    velocity: Vector
+    """Velocity of the surface [m/s], along the wall."""
+    start: NonNegativeReal = 0.0
+    """Time at which the motion begins [s]. Default: 0."""
+    end: PositiveReal | None = None
+    """Time at which the motion stops [s]; null: never. Default: null."""
+
+    @field_validator("end")
+    @classmethod
+    def _after_start(cls, end: float | None, info: ValidationInfo) -> float | None:
+        return _checked_end(end, info)
+
+
 class SteadyRotation(TurningMotion):
     """Rotation at a constant rate between `start` and `end`."""
 
@@ -161,7 +179,7 @@ class Table(TurningMotion):
             yield Problem.at("translation.z", "there is no z in two dimensions", "x, y")
 
 
-Motion = Annotated[Sinusoid | Linear | SteadyRotation | Table, Field(discriminator="type")]
+Motion = Annotated[Sinusoid | Linear | Sliding | SteadyRotation | Table, Field(discriminator="type")]
 """A prescribed motion, chosen by `type`."""
 
 

@@ -17,6 +17,7 @@ from warpsph.scene.fluid_models import (
     Tait,
     Viscosity,
 )
+from warpsph.scene.structures import StructureNumerics
 from warpsph.scene.types import Flag, KernelName, NonNegativeReal, PositiveReal, Real, SceneModel
 
 
@@ -85,6 +86,9 @@ class Numerics(SceneModel):
 
     wall: WallMethod = ExtrapolatedWall()
     """How walls act on the fluid. Default: {type: extrapolated}."""
+
+    structure: StructureNumerics = StructureNumerics()
+    """The scheme of structures. Default: every default of its keys."""
 
     skin: NonNegativeReal = 0.15
     """Margin of the neighbour lists, in support radii [1]. Default: 0.15."""

@@ -9,8 +9,21 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from warpsph.scene.shapes import Bounds
 from warpsph.scene.types import AXES, Axis, Name, PositiveReal, Real, SceneModel, Vector
 
+STRUCTURE_ENERGIES = (
+    "kinetic",
+    "strain",
+    "hourglass",
+    "contact",
+    "dissipated",
+    "work",
+    "potential",
+    "total",
+    "drift",
+)
+"""Columns of the energies of structures."""
 PointField = Literal["pressure", "velocity", "density"]
 
 
@@ -41,6 +54,20 @@ class FrontProbe(_Probe):
         return ("position[m]",)
 
 
+class ReachProbe(_Probe):
+    """Largest distance of fluid from a point, half the diagonal of a particle's cell included."""
+
+    type: Literal["reach"] = "reach"
+    center: Vector
+    """The point [m]."""
+
+    fluid: Name | None = None
+    """One fluid only; null: all fluids. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("radius[m]",)
+
+
 class WaterLevelProbe(_Probe):
     """Height of the free surface at a vertical gauge."""
 
@@ -56,17 +83,21 @@ class WaterLevelProbe(_Probe):
 
 
 class WallPressureProbe(_Probe):
-    """Mean pressure on the wall particles near a point."""
+    """Mean pressure on the surface of a wall near a point.
+
+    It is taken from the first layer of wall particles, and moved to the surface half a spacing before it by the
+    hydrostatic gradient.
+    """
 
     type: Literal["wall_pressure"] = "wall_pressure"
     boundary: Name
     """The boundary that carries the gauge."""
 
     at: Vector
-    """Centre of the gauge [m]."""
+    """Centre of the gauge [m], on the surface."""
 
     radius: PositiveReal
-    """Wall particles within this distance count [m]."""
+    """Wall particles of the first layer within this distance count [m]."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return ("pressure[Pa]",)
@@ -103,10 +134,7 @@ class ForceProbe(_Probe):
     the start. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
-        if dimension == 2:
-            return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
-        forces = tuple(f"force_{axis}[N]" for axis in AXES)
-        return forces + tuple(f"torque_{axis}[N m]" for axis in AXES)
+        return _force_columns(dimension)
 
 
 class EnergyProbe(_Probe):
@@ -120,15 +148,119 @@ class EnergyProbe(_Probe):
 
 
 class VolumeProbe(_Probe):
-    """Volume (sum of m/rho) and number of particles of all fluids, and how many have left through the kill box."""
+    """Volume (sum of m/rho) and number of particles of all fluids, and how many are gone since the start: through the
+    kill box or, where a region is given, out of it."""
 
     type: Literal["volume"] = "volume"
+    region: Bounds | None = None
+    """Only particles in this box count; null: all. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return (f"volume[m{dimension}]", "particles[1]", "removed[1]")
 
 
+class DisplacementProbe(_Probe):
+    """Displacement and velocity of a material point of a structure, by first-order consistent interpolation."""
+
+    type: Literal["displacement"] = "displacement"
+    structure: Name
+    """The structure."""
+
+    at: Vector
+    """Where the point is at rest [m]; in the structure or on its surface."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        shifts = tuple(f"displacement_{axis}[m]" for axis in AXES[:dimension])
+        return shifts + tuple(f"velocity_{axis}[m/s]" for axis in AXES[:dimension])
+
+
+class RotationProbe(_Probe):
+    """Angle by which a material point of a structure has turned about an axis, right-handed, from -pi to pi."""
+
+    type: Literal["rotation"] = "rotation"
+    structure: Name
+    """The structure."""
+
+    at: Vector
+    """Where the point is at rest [m]; in the structure or on its surface, and not on the axis."""
+
+    about: Vector
+    """A point of the axis [m]."""
+
+    axis: Axis = "z"
+    """Direction of the axis; z in two dimensions. Default: z."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return ("angle[rad]",)
+
+
+class ReactionProbe(_Probe):
+    """Force and torque of a clamp on its structure."""
+
+    type: Literal["reaction"] = "reaction"
+    structure: Name
+    """The structure."""
+
+    clamp: Name
+    """Name of its clamp."""
+
+    about: Vector | None = None
+    """Point about which the torque is taken [m]; null: the centre of the clamped particles at rest. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        return _force_columns(dimension)
+
+
+class StructureEnergyProbe(_Probe):
+    """Energies of structures.
+
+    `work` has been done by loads and moving clamps, `dissipated` has been lost to damping and friction; `potential`
+    is that of gravity, zero at rest. `total` = kinetic + strain + hourglass + contact + potential + dissipated - work:
+    it keeps its value where energy is conserved, and `drift` is how far it has come from that at the start.
+    """
+
+    type: Literal["structure_energy"] = "structure_energy"
+    structure: Name | None = None
+    """One structure only; null: all. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "J/m" if dimension == 2 else "J"
+        return tuple(f"{energy}[{unit}]" for energy in STRUCTURE_ENERGIES)
+
+
+class MomentumProbe(_Probe):
+    """Momentum and angular momentum of structures about the origin."""
+
+    type: Literal["momentum"] = "momentum"
+    structure: Name | None = None
+    """One structure only; null: all. Default: null."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        if dimension == 2:
+            return ("momentum_x[kg/s]", "momentum_y[kg/s]", "angular_momentum_z[kg m/s]")
+        linear = tuple(f"momentum_{axis}[kg m/s]" for axis in AXES)
+        return linear + tuple(f"angular_momentum_{axis}[kg m2/s]" for axis in AXES)
+
+
+def _force_columns(dimension: int) -> tuple[str, ...]:
+    if dimension == 2:
+        return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
+    return tuple(f"force_{axis}[N]" for axis in AXES) + tuple(f"torque_{axis}[N m]" for axis in AXES)
+
+
 Probe = Annotated[
-    FrontProbe | WaterLevelProbe | WallPressureProbe | PointProbe | ForceProbe | EnergyProbe | VolumeProbe,
+    FrontProbe
+    | ReachProbe
+    | WaterLevelProbe
+    | WallPressureProbe
+    | PointProbe
+    | ForceProbe
+    | EnergyProbe
+    | VolumeProbe
+    | DisplacementProbe
+    | RotationProbe
+    | ReactionProbe
+    | StructureEnergyProbe
+    | MomentumProbe,
     Field(discriminator="type"),
 ]

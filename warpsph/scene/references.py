@@ -8,11 +8,44 @@ from typing import Annotated, Any, Literal
 from pydantic import Discriminator, Field, Tag
 
 from warpsph.scene.expressions import Expression
-from warpsph.scene.types import FileName, Name, NonNegativeReal, PositiveReal, Real, SceneModel
+from warpsph.scene.types import (
+    Axis,
+    FileName,
+    Name,
+    NonNegativeReal,
+    PositiveReal,
+    Real,
+    SceneModel,
+    Vector,
+)
 
 Norm = Literal["max", "rms"]
 ReferenceField = Literal["pressure", "density", "velocity_x", "velocity_y", "velocity_z"]
+Feature = Literal[
+    "maximum",
+    "minimum",
+    "maximum_time",
+    "minimum_time",
+    "mean",
+    "integral",
+    "arrival",
+    "first_peak",
+    "first_peak_time",
+    "period",
+    "decay_rate",
+]
+Bound = PositiveReal | Annotated[tuple[tuple[PositiveReal, PositiveReal], ...], Field(min_length=1)]
 Times = Annotated[tuple[NonNegativeReal, ...], Field(min_length=1)]
+
+_SAME_SPACING = 1e-6
+
+
+def bound_at(bound: Bound | None, spacing: float) -> float | None:
+    """The bound of a run of that spacing [m]; None where it is coarser than all that have one."""
+    if not isinstance(bound, tuple):
+        return bound
+    coarser = [pair for pair in bound if pair[0] >= spacing * (1.0 - _SAME_SPACING)]
+    return min(coarser)[1] if coarser else None
 
 
 class InlineTable(SceneModel):
@@ -44,8 +77,37 @@ class FileTable(SceneModel):
     """Factor that turns the file's values into the unit of the compared column. Default: 1."""
 
 
+class InlineProfile(SceneModel):
+    """A profile given in the scene itself."""
+
+    position: Annotated[tuple[Real, ...], Field(min_length=1)]
+    """Coordinates along the line [m]."""
+
+    value: Annotated[tuple[Real, ...], Field(min_length=1)]
+    """Value at each of them, in the unit of the field."""
+
+
+class FileProfile(SceneModel):
+    """A profile in two columns of a CSV file with a header line; lines that begin with # are skipped."""
+
+    file: FileName
+    """CSV file, relative to the scene file."""
+
+    position: str
+    """Header of the column of coordinates along the line."""
+
+    value: str
+    """Header of the column of values."""
+
+    position_scale: PositiveReal = 1.0
+    """Factor that turns the file's coordinates into metres. Default: 1."""
+
+    value_scale: Real = 1.0
+    """Factor that turns the file's values into the unit of the field. Default: 1."""
+
+
 def _table_tag(table: Any) -> str:
-    has_file = "file" in table if isinstance(table, Mapping) else isinstance(table, FileTable)
+    has_file = "file" in table if isinstance(table, Mapping) else hasattr(table, "file")
     return "(table in a file)" if has_file else "(inline table)"
 
 
@@ -53,6 +115,11 @@ Table = Annotated[
     Annotated[FileTable, Tag("(table in a file)")] | Annotated[InlineTable, Tag("(inline table)")],
     Discriminator(_table_tag),
 ]
+Profile = Annotated[
+    Annotated[FileProfile, Tag("(table in a file)")] | Annotated[InlineProfile, Tag("(inline table)")],
+    Discriminator(_table_tag),
+]
+RelativeTo = Literal["value", "peak"] | PositiveReal
 
 
 class _Reference(SceneModel):
@@ -64,11 +131,14 @@ class _Compared(_Reference):
     norm: Norm = "max"
     """How errors at several times or particles become one: max or rms. Default: max."""
 
-    relative_to: Literal["value"] | PositiveReal = "value"
-    """Errors are divided by this: the reference value itself, or a number in its unit. Default: value."""
+    relative_to: RelativeTo = "value"
+    """Errors are divided by this: the reference value itself (value), the largest magnitude that it has over the
+    particles or points at that time, or over the times of a series (peak), or a number in its unit.
+    Default: value."""
 
-    bound: PositiveReal | None = None
-    """Largest relative error that passes [1]; null: reported without verdict. Default: null."""
+    bound: Bound | None = None
+    """Largest relative error that passes [1]; a list of [particle spacing [m], bound] where it falls with the
+    resolution, each bound for its spacing and finer ones; null: reported without verdict. Default: null."""
 
     uncertainty: NonNegativeReal = 0.0
     """Of the reference itself, relative like the error [1]. Default: 0."""
@@ -86,6 +156,10 @@ class SeriesReference(_Compared):
 
     at: Times | None = None
     """Times of comparison [s]; null: those of the table. Default: null."""
+
+    unroll: PositiveReal | None = None
+    """The column begins anew at this period, as an angle does at 2 pi; it is continued from its first value on, in the
+    unit of the column; null: it does not. Default: null."""
 
     lag: Literal["none", "fit"] = "none"
     """fit: shift the reference by the start-up lag that fits best, and state it. Default: none."""
@@ -108,6 +182,64 @@ class FieldReference(_Compared):
     """Times of comparison [s], each at the nearest frame; null: the end. Default: null."""
 
 
+class ProfileReference(_Compared):
+    """A fluid field along a straight line, interpolated to first order, against a table."""
+
+    type: Literal["profile"] = "profile"
+    field: ReferenceField
+    """The field: pressure [Pa], density [kg/m3], velocity_x, velocity_y or velocity_z [m/s]."""
+
+    through: Vector
+    """A point of the line [m]; its coordinate along `axis` does not matter."""
+
+    axis: Axis
+    """Direction of the line. Positions of the table are coordinates along it."""
+
+    table: Profile
+    """The reference profile: {position, value} inline, or {file, position, value} for columns of a CSV file."""
+
+    at: Times | None = None
+    """Times of comparison [s], each at the nearest frame; null: the end. Default: null."""
+
+
+class FeatureReference(_Reference):
+    """One figure that is taken from a probe column, against a value or against the next coarser resolution."""
+
+    type: Literal["feature"] = "feature"
+    column: str
+    """The probe column, such as energy.kinetic[J]."""
+
+    feature: Feature
+    """maximum, minimum or mean [unit of the column]; maximum_time and minimum_time, when they are [s], between samples
+    by a parabola; integral over time [unit s]; arrival: first time at which the
+    column reaches `threshold` [s]; first_peak: largest value from the arrival until the column has fallen below half of
+    it, and first_peak_time, when that is [s]; period: mean time between upward passages of the mean value [s];
+    decay_rate: k of the exponential exp(-k t) that fits best [1/s]."""
+
+    window: tuple[NonNegativeReal, NonNegativeReal] | None = None
+    """First and last time [s]; null: the whole run. Default: null."""
+
+    threshold: Real | None = None
+    """Value of the column that counts as arrival; for arrival and first peaks. Default: null."""
+
+    value: Real | None = None
+    """What the figure should be, in its unit; null: reported only. Default: null."""
+
+    relative_to: Literal["value"] | PositiveReal = "value"
+    """The error is divided by this: the reference value itself, or a number in its unit. Default: value."""
+
+    bound: Bound | None = None
+    """Largest relative error that passes [1]; a list of [particle spacing [m], bound] where it falls with the
+    resolution, each bound for its spacing and finer ones; null: reported without verdict. Default: null."""
+
+    uncertainty: NonNegativeReal = 0.0
+    """Of the reference itself, relative like the error [1]. Default: 0."""
+
+    convergence: PositiveReal | None = None
+    """In place of `value`: largest relative change [1] from the second finest to the finest resolution of a
+    validation. Default: null."""
+
+
 class LimitReference(_Reference):
     """A probe column stays between limits over a window of time."""
 
@@ -125,4 +257,7 @@ class LimitReference(_Reference):
     """Largest value that passes; null: no limit. Default: null."""
 
 
-Reference = Annotated[SeriesReference | FieldReference | LimitReference, Field(discriminator="type")]
+Reference = Annotated[
+    SeriesReference | FieldReference | ProfileReference | FeatureReference | LimitReference,
+    Field(discriminator="type"),
+]

@@ -16,12 +16,13 @@ from warpsph.scene.checks import scene_problems
 from warpsph.scene.document import Document, placed
 from warpsph.scene.dump import to_yaml
 from warpsph.scene.errors import SceneError
-from warpsph.scene.expressions import Expression
+from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
 from warpsph.scene.references import Reference
 from warpsph.scene.shapes import Bounds, Shape
+from warpsph.scene.structures import Contact, Structure
 from warpsph.scene.types import (
     Axis,
     FileName,
@@ -36,7 +37,19 @@ from warpsph.scene.types import (
 )
 
 Face = Literal["x_min", "x_max", "y_min", "y_max", "z_min", "z_max"]
-OutputField = Literal["velocity", "density", "pressure", "mass"]
+OutputField = Literal[
+    "velocity",
+    "density",
+    "pressure",
+    "mass",
+    "vorticity",
+    "free_surface",
+    "displacement",
+    "cauchy_stress",
+    "von_mises",
+    "green_lagrange_strain",
+    "volume_ratio",
+]
 _NAMED = Field(json_schema_extra={"additionalProperties": False})
 
 
@@ -82,8 +95,17 @@ class UniformPressure(SceneModel):
     """Pressure [Pa]."""
 
 
-InitialPressure = Annotated[HydrostaticPressure | UniformPressure, Field(discriminator="type")]
-InitialVelocity = Annotated[tuple[Real | Expression, ...], Field(min_length=2, max_length=3)]
+class ExpressionPressure(SceneModel):
+    """Initial pressure as a formula."""
+
+    type: Literal["expression"] = "expression"
+    value: Expression
+    """Pressure [Pa] as an expression in x, y, z [m]."""
+
+
+InitialPressure = Annotated[
+    HydrostaticPressure | UniformPressure | ExpressionPressure, Field(discriminator="type")
+]
 
 
 class Fluid(SceneModel):
@@ -98,7 +120,7 @@ class Fluid(SceneModel):
     kinematic_viscosity: NonNegativeReal = 0.0
     """Used by laminar viscosity [m2/s]. Default: 0."""
 
-    velocity: InitialVelocity | None = None
+    velocity: VectorField | None = None
     """Initial velocity [m/s]; each component is a number or an expression in x, y, z [m]; null: at rest.
     Default: null."""
 
@@ -145,7 +167,9 @@ class Output(SceneModel):
     """Write frames.h5. Default: false."""
 
     fields: tuple[OutputField, ...] = ("velocity", "density", "pressure")
-    """Fields in the frames beside position and id: velocity, density, pressure, mass.
+    """Fields in the frames beside position and id: velocity, mass; of fluids density, pressure, vorticity [1/s] and
+    free_surface (1 there, else 0); of structures
+    displacement, cauchy_stress, von_mises, green_lagrange_strain, volume_ratio (J).
     Default: velocity, density, pressure."""
 
     checkpoint_every: PositiveInteger | None = None
@@ -192,11 +216,17 @@ class Scene(SceneModel):
     numerics: Numerics = Numerics()
     """The scheme. Default: every default of its keys."""
 
-    fluids: Annotated[Mapping[Name, Fluid], Field(min_length=1), _NAMED]
-    """Bodies of fluid by name."""
+    fluids: Annotated[Mapping[Name, Fluid], _NAMED] = {}
+    """Bodies of fluid by name. Default: none."""
 
     boundaries: Annotated[Mapping[Name, Boundary], _NAMED] = {}
     """Walls by name. Default: none."""
+
+    structures: Annotated[Mapping[Name, Structure], _NAMED] = {}
+    """Flexible structures by name. Default: none."""
+
+    contact: Contact | None = None
+    """Contact of structures; null: they pass through each other and through walls. Default: null."""
 
     probes: Annotated[Mapping[Name, Probe], _NAMED] = {}
     """Quantities sampled over time, by name. Default: none."""

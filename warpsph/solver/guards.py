@@ -11,7 +11,8 @@ from warpsph.particles.state import host_view
 from warpsph.sampling import SampledSet
 from warpsph.solver.assemble import Parts
 from warpsph.solver.errors import SimulationDiverged
-from warpsph.solver.step import Stepper, StepReport
+from warpsph.solver.step import Stepper
+from warpsph.solver.system import StepReport
 
 LARGEST_MACH = 2.0
 """Speed over sound speed at which a weakly compressible run is stopped."""

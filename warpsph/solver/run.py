@@ -10,7 +10,6 @@ from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
-from warpsph_kernels.clock import TIME
 
 from warpsph.comparison.compare import FieldSample, compare_run, field_samples, fields_needed
 from warpsph.frame import Frame
@@ -71,9 +70,8 @@ def run_scene(
     saved = read_checkpoint(out / RunDirectory(out).checkpoint.name) if resume else None
     if saved is not None:
         require_same_run(scene, saved.scene_text, RunDirectory(out).checkpoint)
-        require_time_left(
-            scene, float(saved.state["simulation"]["clock"][TIME]), RunDirectory(out).checkpoint
-        )
+        time_saved = float(saved.state["simulation"]["time"])
+        require_time_left(scene, time_saved, RunDirectory(out).checkpoint)
     run = _Run(sim, create_run_directory(out, scene, resume=resume), reporter)
     if saved is not None:
         run.restore(saved.state)
@@ -178,7 +176,8 @@ class _Run:
         return self._sim.frame(self._probe_fields, ordered=False)
 
     def _frame_fields(self) -> list[str]:
-        return sorted({*self._scene.output.fields, *fields_needed(self._scene), "velocity"})
+        asked = self._sim.system.fields.intersection(self._scene.output.fields)
+        return sorted({*asked, *fields_needed(self._scene), "velocity"})
 
     def _write_checkpoint(self) -> None:
         state = {

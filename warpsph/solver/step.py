@@ -7,7 +7,6 @@ order, reversible for sound waves, and with one force sum and one continuity sum
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 import warp as wp
@@ -20,16 +19,9 @@ from warpsph.physics.boundary import WallModel
 from warpsph.physics.fluid import material, padded, smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, WALL, Parts
+from warpsph.solver.system import StepReport
 
 NO_LIMIT = 1.0e30
-
-
-@dataclass(frozen=True)
-class StepReport:
-    """What a step did: its size [s] and the limit that ruled it."""
-
-    dt: float
-    limit: str
 
 
 class Stepper:

@@ -8,12 +8,8 @@ from importlib.metadata import PackageNotFoundError, version
 from typing import Any
 
 from warpsph.comparison.row import Comparison
-from warpsph.solver.ledger import Ledger, measure_ledger
+from warpsph.solver.ledger import Ledger
 from warpsph.solver.simulation import Simulation
-
-NOTABLE_MACH = 0.2
-"""Speed over sound speed from which compressibility shows (density errors of four per cent)."""
-NOTABLE_COMPRESSION = 0.05
 
 
 class StepStatistics:
@@ -24,9 +20,8 @@ class StepStatistics:
         self.particle_steps = 0
         self._shortest, self._longest, self._sum = float("inf"), 0.0, 0.0
         self._ruling: dict[str, int] = {}
-        self.largest_speed = 0.0
-        self.largest_compression = 0.0
-        self.first: Ledger = measure_ledger(sim)
+        self.largest: dict[str, float] = {}
+        self.first: Ledger = sim.ledger()
         self._stages_before: dict[str, float] = {}
         self._list_builds_before = 0
 
@@ -42,12 +37,12 @@ class StepStatistics:
     def note(self, sim: Simulation) -> None:
         """Count the step that the simulation has just made."""
         step = sim.last_step
-        self.count += 1
-        self.particle_steps += sim.particle_count
-        self._sum += step.dt
-        self._ruling[step.limit] = self._ruling.get(step.limit, 0) + 1
-        self.largest_speed = max(self.largest_speed, sim.largest_speed)
-        self.largest_compression = max(self.largest_compression, sim.largest_compression)
+        self.count += step.count
+        self.particle_steps += step.count * sim.particle_count
+        self._sum += step.count * step.dt
+        self._ruling[step.limit] = self._ruling.get(step.limit, 0) + step.count
+        for name, value in sim.extremes.items():
+            self.largest[name] = max(self.largest.get(name, 0.0), value)
         if step.limit != "frame":
             self._shortest, self._longest = min(self._shortest, step.dt), max(self._longest, step.dt)
 
@@ -62,7 +57,7 @@ class StepStatistics:
         self.count, self.particle_steps = saved["count"], saved["particle_steps"]
         self._shortest, self._longest, self._sum = saved["shortest"], saved["longest"], saved["sum"]
         self._ruling = dict(saved["ruling"])
-        self.largest_speed, self.largest_compression = saved["largest_speed"], saved["largest_compression"]
+        self.largest = dict(saved["largest"])
         self.first = Ledger(**saved["first"])
         self._stages_before = dict(saved["stages_before"])
         self._list_builds_before = saved["list_builds_before"] - sim.list_builds
@@ -103,18 +98,19 @@ def summarise(
         "steps": statistics.as_record(),
         "list_builds": statistics.list_builds(sim),
         "sound_speed_m_s": sim.sound_speed,
-        "largest_mach": statistics.largest_speed / sim.sound_speed,
-        "largest_compression": statistics.largest_compression,
+        "largest_mach": statistics.largest.get("speed", 0.0) / sim.sound_speed,
+        **{f"largest_{name}": value for name, value in statistics.largest.items()},
         "bytes_per_particle": description["bytes_per_particle"],
+        "neighbours": description.get("neighbours"),
         "passes": description["passes"],
-        "ledger": {"start": vars(statistics.first), "end": _end_ledger(sim, status)},
-        "warnings": _warnings(sim, statistics),
+        "ledger": {"start": statistics.first.as_record(), "end": _end_ledger(sim, status)},
+        "warnings": sim.system.warnings(statistics.largest) if statistics.count else [],
         "references": [row.as_record() for row in rows],
     }
 
 
 def _end_ledger(sim: Simulation, status: str) -> dict[str, Any] | None:
-    return None if status.startswith(("diverged", "failed")) else vars(measure_ledger(sim))
+    return None if status.startswith(("diverged", "failed")) else sim.ledger().as_record()
 
 
 def _versions() -> dict[str, str]:
@@ -125,21 +121,3 @@ def _versions() -> dict[str, str]:
         except PackageNotFoundError:
             found[package] = "not installed"
     return found
-
-
-def _warnings(sim: Simulation, statistics: StepStatistics) -> list[str]:
-    warnings = []
-    mach = statistics.largest_speed / sim.sound_speed
-    if mach > NOTABLE_MACH:
-        warnings.append(
-            f"the largest speed was {mach:.2f} of the sound speed; above {NOTABLE_MACH:g} compressibility shows: "
-            f"raise numerics.sound_speed above {10.0 * statistics.largest_speed:.3g} m/s"
-        )
-    if statistics.largest_compression > NOTABLE_COMPRESSION:
-        warnings.append(
-            f"the density was off by up to {statistics.largest_compression:.1%}; raise numerics.sound_speed or "
-            "lower time.cfl if that is not the impact of a splash"
-        )
-    if sim.removed_count:
-        warnings.append(f"{sim.removed_count} particles left the kill box and were removed")
-    return warnings

@@ -10,6 +10,7 @@ from typing import Any
 
 from warpsph.scene import load_scene, shipped_scenes
 from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.references import bound_at
 from warpsph.scene.schema import Scene, Validation
 
 RunScene = Callable[[Scene, Path], Mapping[str, Any]]
@@ -104,7 +105,7 @@ def _row(case: Case, comparison: Mapping[str, Any], facts: Mapping[str, Any]) ->
 
 
 def _row_of_failed_run(case: Case, quantity: str) -> dict[str, Any]:
-    bound = getattr(case.scene.references[quantity], "bound", 0.0)
+    bound = bound_at(getattr(case.scene.references[quantity], "bound", 0.0), case.scene.spacing)
     nothing = dict.fromkeys(("value", "reference", "error"))
     comparison = {"quantity": quantity, **nothing, "bound": bound, "holds": None if bound is None else False}
     return _row(case, comparison, dict.fromkeys(RUN_FACTS))

@@ -10,6 +10,7 @@ from warpsph.scene.checks.geometry import geometry_problems
 from warpsph.scene.checks.references import probe_problems, reference_problems
 from warpsph.scene.checks.sets import boundary_problems, fluid_problems
 from warpsph.scene.checks.settings import domain_problems, settings_problems
+from warpsph.scene.checks.structures import structure_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import Components, SceneModel
 
@@ -26,13 +27,19 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
 
     `declared` holds more names than the scene where objects of the file were left out because they are wrong.
     """
-    sections = {"fluids": scene.fluids, "boundaries": scene.boundaries, "probes": scene.probes}
+    sections = {
+        "fluids": scene.fluids,
+        "boundaries": scene.boundaries,
+        "structures": scene.structures,
+        "probes": scene.probes,
+    }
     names = declared or DeclaredNames.of(sections)
     of_places = [
         *_value_problems(scene, scene.dimension, ""),
         *domain_problems(scene),
         *fluid_problems(scene),
         *boundary_problems(scene, names),
+        *structure_problems(scene, names),
     ]
     yield from of_places
     if not of_places:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from warpsph.scene.errors import Problem
-from warpsph.scene.expressions import free_variables
+from warpsph.scene.expressions import VectorField, free_variables
 from warpsph.scene.types import AXES
 
 
@@ -18,6 +18,7 @@ class DeclaredNames:
 
     fluids: frozenset[str]
     boundaries: frozenset[str]
+    structures: frozenset[str]
     probes: frozenset[str]
 
     @classmethod
@@ -28,7 +29,7 @@ class DeclaredNames:
             value = sections.get(section)
             return frozenset(value) if isinstance(value, Mapping) else frozenset()
 
-        return cls(names("fluids"), names("boundaries"), names("probes"))
+        return cls(*map(names, ("fluids", "boundaries", "structures", "probes")))
 
 
 def unknown_name(key: str, kind: str, name: str, known: Iterable[str]) -> Problem:
@@ -57,6 +58,18 @@ def expression_problems(key: str, expression: str, variables: Sequence[str]) -> 
     if foreign:
         message = f"{', '.join(foreign)} has no meaning here"
         yield Problem.at(key, message, f"an expression in {', '.join(variables)}", expression)
+
+
+def vector_field_problems(key: str, field: VectorField | None, dimension: int) -> Iterator[Problem]:
+    """Problems of a vector of numbers or expressions: its length, and variables without meaning."""
+    if field is None:
+        return
+    if len(field) != dimension:
+        message = f"{len(field)} components where dimension is {dimension}"
+        yield Problem.at(key, message, f"{dimension} components", list(field))
+    for index, component in enumerate(field):
+        if isinstance(component, str):
+            yield from expression_problems(f"{key}.{index}", component, AXES[:dimension])
 
 
 def repeated_problems(key: str, values: Sequence[str]) -> Iterator[Problem]:

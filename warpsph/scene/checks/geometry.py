@@ -1,4 +1,4 @@
-"""Checks of where fluids and boundaries are, and of the particle number that follows."""
+"""Checks of where fluids, structures and boundaries are, and of the particle number that follows."""
 
 from __future__ import annotations
 
@@ -23,7 +23,11 @@ Box = tuple[np.ndarray, np.ndarray]
 
 def geometry_problems(scene: Scene) -> Iterator[Problem]:
     """Shapes that are empty, endless, thinner than a particle, too large, or outside the domain."""
-    boxes = {f"fluids.{name}.shape": bounding_box(fluid.shape) for name, fluid in scene.fluids.items()}
+    fluids = {f"fluids.{name}.shape": bounding_box(fluid.shape) for name, fluid in scene.fluids.items()}
+    boxes = fluids | {
+        f"structures.{name}.shape": bounding_box(structure.shape)
+        for name, structure in scene.structures.items()
+    }
     problems = [*_endless_problems(boxes)]
     yield from problems
     if problems:
@@ -44,10 +48,10 @@ def _spacings(scene: Scene) -> Iterator[tuple[str, float]]:
                 yield f"validation.{tier}.{index}", spacing
 
 
-def _endless_problems(fluids: dict[str, Box]) -> Iterator[Problem]:
-    for key, (low, high) in fluids.items():
+def _endless_problems(bodies: dict[str, Box]) -> Iterator[Problem]:
+    for key, (low, high) in bodies.items():
         if not np.isfinite([low, high]).all():
-            yield Problem.at(key, "a fluid without end cannot be filled", "a shape that ends on all sides")
+            yield Problem.at(key, "a body without end cannot be filled", "a shape that ends on all sides")
 
 
 def _thin_problems(key: str, spacing: float, boxes: dict[str, Box]) -> Iterator[Problem]:
@@ -60,30 +64,30 @@ def _thin_problems(key: str, spacing: float, boxes: dict[str, Box]) -> Iterator[
         yield Problem.at(key, message, f"at most {size:g} m, better a tenth of it", spacing)
 
 
-def _number_problems(key: str, spacing: float, fluids: dict[str, Box]) -> Iterator[Problem]:
-    boxes = fluids.values()
+def _number_problems(key: str, spacing: float, bodies: dict[str, Box]) -> Iterator[Problem]:
+    boxes = bodies.values()
     number = sum(math.prod(float(length) / spacing for length in high - low) for low, high in boxes)
     if number > MAX_PARTICLES:
-        message = f"the fluids need up to {number:.2g} particles"
+        message = f"fluids and structures need up to {number:.2g} particles"
         coarser = spacing * (number / MAX_PARTICLES) ** (1.0 / len(next(iter(boxes))[0]))
         yield Problem.at(key, message, f"{MAX_PARTICLES} particles: at least {coarser:.3g} m", spacing)
 
 
-def _kill_box_problems(scene: Scene, fluids: dict[str, Box]) -> Iterator[Problem]:
+def _kill_box_problems(scene: Scene, bodies: dict[str, Box]) -> Iterator[Problem]:
     box = scene.domain.kill_box
     if box is None:
         return
     margin = _ROUNDING * np.abs(np.subtract(box.max, box.min))
-    for key, (low, high) in fluids.items():
+    for key, (low, high) in bodies.items():
         if (low < box.min - margin).any() or (high > box.max + margin).any():
             message = f"{key} reaches out of the kill box, so particles would be removed at once"
             yield Problem.at("domain.kill_box", message, f"a box around {_corners(low, high)}")
 
 
-def _period_problems(scene: Scene, fluids: dict[str, Box]) -> Iterator[Problem]:
+def _period_problems(scene: Scene, bodies: dict[str, Box]) -> Iterator[Problem]:
     for axis, (start, end) in scene.domain.periodic.items():
         index, margin = AXES.index(axis), _ROUNDING * abs(end - start)
-        for key, (low, high) in fluids.items():
+        for key, (low, high) in bodies.items():
             if low[index] < start - margin or high[index] > end + margin:
                 message = f"it reaches from {low[index]:g} to {high[index]:g} m in {axis}, out of the period"
                 yield Problem.at(key, message, f"{start:g} to {end:g} m, as in domain.periodic.{axis}")

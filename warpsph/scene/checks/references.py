@@ -14,14 +14,30 @@ from warpsph.scene.checks.common import (
 )
 from warpsph.scene.errors import Problem
 from warpsph.scene.probes import (
+    DisplacementProbe,
+    EnergyProbe,
     ForceProbe,
     FrontProbe,
+    MomentumProbe,
     PointProbe,
     Probe,
+    ReachProbe,
+    ReactionProbe,
+    RotationProbe,
+    StructureEnergyProbe,
+    VolumeProbe,
     WallPressureProbe,
     WaterLevelProbe,
 )
-from warpsph.scene.references import FieldReference, InlineTable, LimitReference, SeriesReference
+from warpsph.scene.references import (
+    FeatureReference,
+    FieldReference,
+    InlineProfile,
+    InlineTable,
+    LimitReference,
+    ProfileReference,
+    SeriesReference,
+)
 from warpsph.scene.types import AXES
 
 if TYPE_CHECKING:
@@ -32,9 +48,16 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
     """Probes of sets or axes that the scene does not have."""
     for name, probe in scene.probes.items():
         key = f"probes.{name}"
+        yield from _kind_problems(probe, names, key)
         yield from _set_problems(probe, names, key)
+        if isinstance(probe, ReactionProbe) and probe.structure in scene.structures:
+            clamps = scene.structures[probe.structure].clamps
+            if probe.clamp not in clamps:
+                yield unknown_name(f"{key}.clamp", "clamp", probe.clamp, clamps)
         axis = getattr(probe, "axis", None)
-        if axis == "z" and scene.dimension == 2:
+        if isinstance(probe, RotationProbe):
+            yield from _rotation_problems(probe, scene, key)
+        elif axis == "z" and scene.dimension == 2:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
@@ -42,10 +65,40 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield from repeated_problems(f"{key}.fields", probe.fields)
 
 
+def _rotation_problems(probe: RotationProbe, scene: Scene, key: str) -> Iterator[Problem]:
+    if scene.dimension == 2 and probe.axis != "z":
+        yield Problem.at(f"{key}.axis", "all turns in the plane are about z", "z", probe.axis)
+    across = [AXES.index(axis) for axis in AXES[: scene.dimension] if axis != probe.axis]
+    if all(probe.at[k] == probe.about[k] for k in across):
+        yield Problem.at(f"{key}.at", "the point lies on the axis", "a point beside it", list(probe.at))
+
+
+def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    """Probes that look at everything of a kind of which the scene has nothing."""
+    match probe:
+        case FrontProbe() | ReachProbe() | WaterLevelProbe() | PointProbe() | EnergyProbe() | VolumeProbe():
+            kind, there = "fluid", names.fluids
+        case StructureEnergyProbe() | MomentumProbe():
+            kind, there = "structure", names.structures
+        case _:
+            return
+    if not there:
+        message = f"it looks at {kind}s, of which the scene has none"
+        yield Problem.at(f"{key}.type", message, f"a scene with a {kind}, or another probe", probe.type)
+
+
 def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
     match probe:
-        case FrontProbe(fluid=str(fluid)) if fluid not in names.fluids:
+        case FrontProbe(fluid=str(fluid)) | ReachProbe(fluid=str(fluid)) if fluid not in names.fluids:
             yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
+        case (
+            DisplacementProbe(structure=str(structure))
+            | RotationProbe(structure=str(structure))
+            | ReactionProbe(structure=str(structure))
+            | StructureEnergyProbe(structure=str(structure))
+            | MomentumProbe(structure=str(structure))
+        ) if structure not in names.structures:
+            yield unknown_name(f"{key}.structure", "structure", structure, names.structures)
         case WallPressureProbe() | ForceProbe() if probe.boundary not in names.boundaries:
             yield unknown_name(f"{key}.boundary", "boundary", probe.boundary, names.boundaries)
 
@@ -73,6 +126,11 @@ def reference_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
                 yield from _limit_problems(reference, key)
             case FieldReference():
                 yield from _field_problems(reference, scene, names, key)
+            case ProfileReference():
+                yield from _profile_problems(reference, scene, key)
+            case FeatureReference():
+                yield from _column_problems(reference.column, scene, names, key)
+                yield from _feature_problems(reference, key)
 
 
 def _column_problems(column: str, scene: Scene, names: DeclaredNames, key: str) -> Iterator[Problem]:
@@ -108,9 +166,48 @@ def _limit_problems(reference: LimitReference, key: str) -> Iterator[Problem]:
         yield Problem.at(key, "neither low nor high is given, so everything passes", "low, high or both")
     if low is not None and high is not None and low > high:
         yield Problem.at(f"{key}.low", f"low is above high {high:g}", f"at most {high:g}", low)
-    if reference.window is not None and reference.window[0] >= reference.window[1]:
+    yield from _window_problems(reference.window, key)
+
+
+def _window_problems(window: tuple[float, float] | None, key: str) -> Iterator[Problem]:
+    if window is not None and window[0] >= window[1]:
         message = "the window ends before it begins"
-        yield Problem.at(f"{key}.window", message, "[first, last] with first < last", list(reference.window))
+        yield Problem.at(f"{key}.window", message, "[first, last] with first < last", list(window))
+
+
+def _feature_problems(reference: FeatureReference, key: str) -> Iterator[Problem]:
+    yield from _window_problems(reference.window, key)
+    needs_threshold = reference.feature in ("arrival", "first_peak", "first_peak_time")
+    if needs_threshold and reference.threshold is None:
+        yield Problem.at(
+            f"{key}.threshold", f"{reference.feature} needs it", "a number, in the column's unit"
+        )
+    if not needs_threshold and reference.threshold is not None:
+        message = f"{reference.feature} has no threshold"
+        yield Problem.at(f"{key}.threshold", message, "null", reference.threshold)
+    if reference.bound is not None and reference.value is None:
+        yield Problem.at(f"{key}.bound", "there is no value that it bounds", "a value, or convergence")
+    if reference.convergence is not None and reference.value is not None:
+        message = "the value itself is what the figure is compared with"
+        yield Problem.at(f"{key}.convergence", message, "null, or no value", reference.convergence)
+    if reference.value == 0.0 and reference.relative_to == "value":
+        message = "an error relative to the value 0 has no meaning"
+        yield Problem.at(f"{key}.value", message, "relative_to: a number greater than 0", reference.value)
+
+
+def _profile_problems(reference: ProfileReference, scene: Scene, key: str) -> Iterator[Problem]:
+    for name, value in (("field", reference.field), ("axis", reference.axis)):
+        if value[-1] == "z" and scene.dimension == 2:
+            yield no_such_axis(f"{key}.{name}", value, scene.dimension)
+    table = reference.table
+    if not isinstance(table, InlineProfile):
+        return
+    if len(table.position) != len(table.value):
+        message = f"{len(table.value)} values for {len(table.position)} positions"
+        yield Problem.at(f"{key}.table.value", message, f"{len(table.position)} values")
+    if reference.relative_to == "value" and 0.0 in table.value:
+        message = "an error relative to the value 0 has no meaning"
+        yield Problem.at(f"{key}.table.value", message, "relative_to: peak, or a number greater than 0")
 
 
 def _field_problems(

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
-from warpsph.scene.checks.common import DeclaredNames, expression_problems, prefixed
+from warpsph.scene.checks.common import DeclaredNames, expression_problems, prefixed, vector_field_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
@@ -19,12 +19,15 @@ def fluid_problems(scene: Scene) -> Iterator[Problem]:
     for name, fluid in scene.fluids.items():
         key = f"fluids.{name}"
         yield from prefixed(f"{key}.shape", fluid.shape.dimension_problems(scene.dimension))
-        yield from _velocity_problems(scene, fluid, f"{key}.velocity")
+        yield from vector_field_problems(f"{key}.velocity", fluid.velocity, scene.dimension)
+        yield from _speed_problems(scene, fluid, f"{key}.velocity")
         yield from _phase_problems(scene, fluid, key)
         pressure = fluid.pressure
         if pressure.type == "hydrostatic" and pressure.surface != "auto" and not any(scene.gravity):
             message = "without gravity there is no hydrostatic pressure"
             yield Problem.at(f"{key}.pressure.surface", message, "auto, or a gravity", pressure.surface)
+        if pressure.type == "expression":
+            yield from expression_problems(f"{key}.pressure.value", pressure.value, AXES[: scene.dimension])
 
 
 def _phase_problems(scene: Scene, fluid: Fluid, key: str) -> Iterator[Problem]:
@@ -36,16 +39,10 @@ def _phase_problems(scene: Scene, fluid: Fluid, key: str) -> Iterator[Problem]:
             yield Problem.at(f"{key}.{quantity}", message, f"{expected:g}", value)
 
 
-def _velocity_problems(scene: Scene, fluid: Fluid, key: str) -> Iterator[Problem]:
+def _speed_problems(scene: Scene, fluid: Fluid, key: str) -> Iterator[Problem]:
     velocity = fluid.velocity
     if velocity is None:
         return
-    if len(velocity) != scene.dimension:
-        message = f"{len(velocity)} components where dimension is {scene.dimension}"
-        yield Problem.at(key, message, f"{scene.dimension} components", list(velocity))
-    for index, component in enumerate(velocity):
-        if isinstance(component, str):
-            yield from expression_problems(f"{key}.{index}", component, AXES[: scene.dimension])
     numbers = [component for component in velocity if not isinstance(component, str)]
     speed, sound_speed = math.hypot(*numbers), scene.numerics.sound_speed
     if sound_speed != "auto" and speed >= sound_speed:

@@ -1,0 +1,142 @@
+"""Single figures taken from probe columns: peaks, arrivals, periods, rates."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from warpsph.comparison.limits import unit_of, window_of
+from warpsph.comparison.row import Comparison, History, relative_errors
+from warpsph.scene.references import FeatureReference, bound_at
+from warpsph.scene.schema import Scene
+
+PASSAGE_MARGIN = 0.25
+"""A passage of the mean counts once the column has been this many standard deviations below it: noise does not."""
+
+
+def compare_feature(name: str, reference: FeatureReference, scene: Scene, history: History) -> Comparison:
+    """The row of a feature reference; without a `value` the figure is reported and judged by nothing."""
+    time, column, reached = window_of(reference, scene, history)
+    figure = feature_of(reference, time, column) if reached else math.nan
+    expected = math.nan if reference.value is None else reference.value
+    error = relative_errors(np.array([figure]), np.array([expected]), reference.relative_to)[0]
+    return Comparison(
+        quantity=name,
+        compared=f"{reference.feature} of {reference.column}",
+        norm="max",
+        value=figure,
+        reference=expected,
+        error=abs(float(error)),
+        bound=bound_at(reference.bound, scene.spacing),
+        uncertainty=reference.uncertainty,
+        source=reference.source,
+        note=_why_missing(reference, figure, reached),
+    )
+
+
+def feature_of(reference: FeatureReference, time: np.ndarray, column: np.ndarray) -> float:
+    """The figure from times [s] and values, each of shape (n,); not a number where there is none."""
+    if time.size == 0 or not np.isfinite(column).all():
+        return math.nan
+    if reference.feature in THRESHOLD_FEATURES:
+        return THRESHOLD_FEATURES[reference.feature](time, column, float(reference.threshold or 0.0))
+    return FEATURES[reference.feature](time, column)
+
+
+def feature_unit(reference: FeatureReference) -> str:
+    """Unit of the figure, from that of the column."""
+    unit = unit_of(reference.column)
+    units = {"integral": f"{unit} s", "decay_rate": "1/s"}
+    times = dict.fromkeys(("arrival", "first_peak_time", "period", "maximum_time", "minimum_time"), "s")
+    return (units | times).get(reference.feature, unit)
+
+
+def arrival(time: np.ndarray, column: np.ndarray, threshold: float) -> float:
+    """First time at which the column reaches the threshold, by linear interpolation."""
+    reached = np.flatnonzero(column >= threshold)
+    if not len(reached):
+        return math.nan
+    first = reached[0]
+    if first == 0:
+        return float(time[0])
+    return _passage(time, column, first, threshold)
+
+
+def first_peak(time: np.ndarray, column: np.ndarray, threshold: float) -> tuple[float, float]:
+    """Time and value of the largest value from the arrival until the column has fallen below half of it."""
+    reached = np.flatnonzero(column >= threshold)
+    if not len(reached):
+        return math.nan, math.nan
+    after = column[reached[0] :]
+    fallen = np.flatnonzero(after < 0.5 * np.maximum.accumulate(after))
+    end = fallen[0] if len(fallen) else len(after)
+    peak = int(np.argmax(after[:end]))
+    return float(time[reached[0] + peak]), float(after[peak])
+
+
+def maximum_time(time: np.ndarray, column: np.ndarray) -> float:
+    """Time of the largest value: the vertex of the parabola through it and the samples beside it.
+
+    At an end of the window, or where the three samples are level, the time of the sample itself.
+    """
+    top = int(np.argmax(column))
+    if not 0 < top < len(column) - 1:
+        return float(time[top])
+    near = slice(top - 1, top + 2)
+    curvature, slope, _ = np.polyfit(time[near] - time[top], column[near], 2)
+    return float(time[top] - 0.5 * slope / curvature) if curvature < 0.0 else float(time[top])
+
+
+def period(time: np.ndarray, column: np.ndarray) -> float:
+    """Mean time between upward passages of the mean value."""
+    deviation = column - column.mean()
+    low = -PASSAGE_MARGIN * deviation.std()
+    passages, armed = [], False
+    for index in range(1, len(time)):
+        armed = armed or deviation[index - 1] <= low
+        if armed and deviation[index - 1] < 0.0 <= deviation[index]:
+            passages.append(_passage(time, deviation, index, 0.0))
+            armed = False
+    if len(passages) < 2:
+        return math.nan
+    return (passages[-1] - passages[0]) / (len(passages) - 1)
+
+
+def decay_rate(time: np.ndarray, column: np.ndarray) -> float:
+    """k of exp(-k t), by least squares in the logarithm; not a number unless every value is positive."""
+    if len(time) < 2 or (column <= 0.0).any():
+        return math.nan
+    return -float(np.polyfit(time, np.log(column), 1)[0])
+
+
+def _passage(time: np.ndarray, column: np.ndarray, index: int, level: float) -> float:
+    """Time of a level between a sample and the one before it."""
+    below, above = column[index - 1], column[index]
+    return float(time[index - 1] + (level - below) / (above - below) * (time[index] - time[index - 1]))
+
+
+def _why_missing(reference: FeatureReference, figure: float, reached: bool) -> str | None:
+    if not reached:
+        return "the run ended before the window did"
+    if not math.isfinite(figure):
+        return f"the column shows no {reference.feature}"
+    return None if reference.value is not None else f"in {feature_unit(reference)}"
+
+
+FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
+    "maximum": lambda _, column: float(column.max()),
+    "minimum": lambda _, column: float(column.min()),
+    "maximum_time": maximum_time,
+    "minimum_time": lambda time, column: maximum_time(time, -column),
+    "mean": lambda time, column: float(np.trapezoid(column, time) / (time[-1] - time[0])),
+    "integral": lambda time, column: float(np.trapezoid(column, time)),
+    "period": period,
+    "decay_rate": decay_rate,
+}
+THRESHOLD_FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray, float], float]] = {
+    "arrival": arrival,
+    "first_peak": lambda time, column, threshold: first_peak(time, column, threshold)[1],
+    "first_peak_time": lambda time, column, threshold: first_peak(time, column, threshold)[0],
+}

@@ -1,0 +1,79 @@
+"""Checks of structures, their clamps and loads, and of contact."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+from warpsph.scene.checks.common import (
+    DeclaredNames,
+    expression_problems,
+    no_such_axis,
+    prefixed,
+    repeated_problems,
+    vector_field_problems,
+)
+from warpsph.scene.errors import Problem
+from warpsph.scene.types import AXES
+
+if TYPE_CHECKING:
+    from warpsph.scene.schema import Scene
+    from warpsph.scene.structures import Clamp, Load, Structure
+
+
+def structure_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
+    """What is wrong with structures, less where they are."""
+    yield from _company_problems(scene, names)
+    for name, structure in scene.structures.items():
+        key = f"structures.{name}"
+        if name in names.fluids | names.boundaries:
+            message = f"another set has the name {name!r} already"
+            yield Problem.at(key, message, "a name that no other set has", name)
+        yield from prefixed(f"{key}.shape", structure.shape.dimension_problems(scene.dimension))
+        yield from vector_field_problems(f"{key}.velocity", structure.velocity, scene.dimension)
+        yield from vector_field_problems(f"{key}.displacement", structure.displacement, scene.dimension)
+        yield from _plane_problems(structure, scene.dimension, key)
+        for name_of_clamp, clamp in structure.clamps.items():
+            yield from _clamp_problems(clamp, scene.dimension, f"{key}.clamps.{name_of_clamp}")
+        for name_of_load, load in structure.loads.items():
+            yield from _load_problems(load, scene.dimension, f"{key}.loads.{name_of_load}")
+
+
+def _company_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
+    if not names.fluids and not names.structures:
+        yield Problem.at("fluids", "the scene has neither fluids nor structures", "at least one of them")
+    if scene.fluids and scene.structures:
+        message = "fluids and structures in one scene would pass through each other: they are not coupled yet"
+        yield Problem.at("structures", message, "fluids, or structures")
+    if scene.contact is not None and not names.structures:
+        yield Problem.at("contact", "there is no structure to be touched", "contact beside structures")
+
+
+def _plane_problems(structure: Structure, dimension: int, key: str) -> Iterator[Problem]:
+    if structure.plane == "strain":
+        return
+    if dimension == 3:
+        yield Problem.at(f"{key}.plane", "there is no plane in three dimensions", "strain", structure.plane)
+    if structure.material.law == "split_neo_hookean":
+        message = "split_neo_hookean is not there for plane stress"
+        yield Problem.at(f"{key}.plane", message, "strain, or another material.law", structure.plane)
+
+
+def _clamp_problems(clamp: Clamp, dimension: int, key: str) -> Iterator[Problem]:
+    yield from prefixed(f"{key}.region", clamp.region.dimension_problems(dimension))
+    for index, motion in enumerate(clamp.motion):
+        yield from prefixed(f"{key}.motion.{index}", motion.dimension_problems(dimension))
+    if clamp.axes is None:
+        return
+    yield from repeated_problems(f"{key}.axes", clamp.axes)
+    if not clamp.axes:
+        yield Problem.at(f"{key}.axes", "no component is prescribed", "at least one axis, or null for all")
+    for index, axis in enumerate(clamp.axes):
+        if axis not in AXES[:dimension]:
+            yield no_such_axis(f"{key}.axes.{index}", axis, dimension)
+
+
+def _load_problems(load: Load, dimension: int, key: str) -> Iterator[Problem]:
+    if load.region is not None:
+        yield from prefixed(f"{key}.region", load.region.dimension_problems(dimension))
+    yield from expression_problems(f"{key}.factor", load.factor, ("t",))

@@ -1,0 +1,196 @@
+"""Fluids and their walls as a system that a simulation advances."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+import warp as wp
+
+from warpsph.frame import SetFrame
+from warpsph.particles.launch import Launcher
+from warpsph.particles.state import arrays_of, host_view, write_array
+from warpsph.physics.flow_fields import FlowFields
+from warpsph.sampling import SampledSet
+from warpsph.scene.schema import Scene
+from warpsph.solver.assemble import FLUID, assemble
+from warpsph.solver.describe import describe
+from warpsph.solver.guards import check_state
+from warpsph.solver.ledger import Ledger, sum_up
+from warpsph.solver.step import Stepper
+from warpsph.solver.system import StepReport, in_order
+
+ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
+FIELDS = (
+    *("position", "velocity", "density", "pressure", "volume", "mass", "force", "id"),
+    *("vorticity", "free_surface"),
+)
+OF_FLUIDS = ("density", "mass", "vorticity", "free_surface")
+OF_WALLS = ("force",)
+USUAL_FIELDS = ("position", "velocity", "density", "pressure", "mass")
+NOTABLE_MACH = 0.2
+"""Speed over sound speed from which compressibility shows (density errors of four per cent)."""
+NOTABLE_COMPRESSION = 0.05
+
+
+class FluidSystem:
+    """Fluids and walls of a scene. Raises SceneError if they cannot be assembled."""
+
+    def __init__(self, scene: Scene, sampled: Sequence[SampledSet], launcher: Launcher) -> None:
+        self._scene = scene
+        self._sampled = sampled
+        self.parts = assemble(scene, sampled, launcher)
+        self._flow_fields = FlowFields(self.parts.assembly, self.parts.search.rows[FLUID])
+        self._stepper = Stepper(scene, self.parts)
+        self._stepper.start()
+
+    @property
+    def time(self) -> float:
+        return self._stepper.time
+
+    @property
+    def particle_count(self) -> int:
+        return self._alive + self.parts.assembly.layout.walls
+
+    @property
+    def removed_count(self) -> int:
+        return self._stepper.removed
+
+    @property
+    def list_builds(self) -> int:
+        return self.parts.search.builds
+
+    @property
+    def sound_speed(self) -> float:
+        """The artificial sound speed [m/s]."""
+        return float(self.parts.assembly.constants.sound_speed)
+
+    @property
+    def sets(self) -> tuple[tuple[str, str, int], ...]:
+        index = self._host("set_index")
+        return tuple((s.name, s.kind, int(np.sum(index == k))) for k, s in enumerate(self._sampled))
+
+    @property
+    def extremes(self) -> Mapping[str, float]:
+        """Largest speed [m/s] and |rho/rho0 - 1|."""
+        return {"speed": self._stepper.speed, "compression": self._stepper.compression}
+
+    @property
+    def fields(self) -> frozenset[str]:
+        return frozenset(FIELDS)
+
+    @property
+    def arrays(self) -> Mapping[str, wp.array]:
+        state = self.parts.assembly.state
+        return {name: getattr(state, name) for name in ARRAYS}
+
+    def step(self, step_count: int) -> StepReport:
+        report = self._stepper.step()
+        check_state(self._stepper, self.parts, self._sampled, step_count, report)
+        return report
+
+    def set_target(self, time: float) -> None:
+        self._stepper.set_clock(TARGET=time)
+
+    def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
+        """Fields: position, velocity, pressure, volume; of fluids also density, mass, vorticity, free_surface; of walls
+        also force."""
+        self._stepper.synchronise()
+        columns = self._columns({"position", *(USUAL_FIELDS if fields is None else fields)})
+        index = np.array(self._host("set_index"))
+        index[self._alive : self.parts.assembly.layout.fluids] = -1
+        return tuple(
+            self._set_frame(k, sampled, columns, index, ordered) for k, sampled in enumerate(self._sampled)
+        )
+
+    def ledger(self) -> Ledger:
+        """Totals over all fluids."""
+        sets = self.frame_sets(("velocity", "mass"), ordered=False)
+        fluids = tuple(particles for particles in sets if particles.kind == "fluid")
+        return sum_up(self.time, fluids, np.asarray(self._scene.gravity))
+
+    def warnings(self, largest: Mapping[str, float]) -> list[str]:
+        warnings = []
+        mach = largest["speed"] / self.sound_speed
+        if mach > NOTABLE_MACH:
+            warnings.append(
+                f"the largest speed was {mach:.2f} of the sound speed; above {NOTABLE_MACH:g} compressibility "
+                f"shows: raise numerics.sound_speed above {10.0 * largest['speed']:.3g} m/s"
+            )
+        if largest["compression"] > NOTABLE_COMPRESSION:
+            warnings.append(
+                f"the density was off by up to {largest['compression']:.1%}; raise numerics.sound_speed or "
+                "lower time.cfl if that is not the impact of a splash"
+            )
+        if self.removed_count:
+            warnings.append(f"{self.removed_count} particles left the kill box and were removed")
+        return warnings
+
+    def describe(self) -> dict[str, Any]:
+        return describe(self._scene, self.parts, self.sets)
+
+    def save(self) -> dict[str, Any]:
+        return {name: np.array(host_view(array)) for name, array in self._evolving_arrays()} | {
+            "clock": np.array(host_view(self.parts.assembly.clock)),
+            "time": self.time,
+            "alive": self._alive,
+            "removed": self._stepper.removed,
+        }
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        for name, array in self._evolving_arrays():
+            write_array(array, saved[name])
+        self.parts.search.tables[FLUID].count = int(saved["alive"])
+        self._stepper.removed = int(saved["removed"])
+        self._stepper.resume(np.asarray(saved["clock"]))
+
+    @property
+    def _alive(self) -> int:
+        return self.parts.search.tables[FLUID].count
+
+    def _host(self, name: str) -> np.ndarray:
+        return host_view(getattr(self.parts.assembly.state, name))
+
+    def _evolving_arrays(self) -> Iterator[tuple[str, wp.array]]:
+        yield from arrays_of(self.parts.assembly.state)
+        yield "listed_position", self.parts.search.listed_position
+        yield from self.parts.fluid.own_arrays.items()
+        if self.parts.walls:
+            yield from self.parts.walls.own_arrays.items()
+
+    def _columns(self, names: set[str]) -> dict[str, np.ndarray]:
+        a = self.parts.assembly
+        velocity_volume, pressure = self._host("velocity_volume"), host_view(a.scratch.position_pressure)
+        makers: dict[str, Callable[[], np.ndarray]] = {
+            "position": lambda: self._host("position"),
+            "velocity": lambda: velocity_volume[:, :-1],
+            "density": lambda: a.constants.rest_density + self._host("density_deviation").astype(np.float64),
+            "pressure": lambda: pressure[:, -1],
+            "volume": lambda: velocity_volume[:, -1],
+            "mass": lambda: np.full(a.layout.total, a.constants.mass),
+            "force": self._wall_force,
+            "vorticity": self._flow_fields.vorticity,
+            "free_surface": self._flow_fields.free_surface,
+        }
+        unknown = sorted(names - {"id", *makers})
+        if unknown:
+            raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(makers)}, id")
+        return {name: makers[name]() for name in names - {"id"}} | {"id": self._host("id")}
+
+    def _wall_force(self) -> np.ndarray:
+        layout = self.parts.assembly.layout
+        force = np.zeros((layout.total, self._scene.dimension))
+        if self.parts.walls:
+            force[layout.fluids :] = host_view(self.parts.walls.react())
+        return force
+
+    def _set_frame(
+        self, k: int, sampled: SampledSet, columns: Mapping[str, np.ndarray], index: np.ndarray, ordered: bool
+    ) -> SetFrame:
+        own = {name: values for name, values in columns.items() if self._has(sampled.kind, name)}
+        return SetFrame(sampled.name, sampled.kind, in_order(own, ordered, np.flatnonzero(index == k)))
+
+    @staticmethod
+    def _has(kind: str, field: str) -> bool:
+        return field not in (OF_WALLS if kind == "fluid" else OF_FLUIDS)

@@ -1,0 +1,318 @@
+"""From a scene and its particles to the arrays and passes of its structures."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from itertools import groupby
+from typing import Any
+
+import numpy as np
+import warp as wp
+from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.bonds import make_bond_weights
+from warpsph_kernels.materials import LAWS, make_material_struct, make_matrix
+from warpsph_kernels.smoothing import SMOOTHING_KERNELS
+from warpsph_kernels.structure import StructureOptions
+
+from warpsph.particles.bonds import Bonds, make_bonds
+from warpsph.particles.launch import Launcher
+from warpsph.particles.rows import row_array
+from warpsph.particles.state import write_array
+from warpsph.physics.structure import (
+    LawRange,
+    StructureModel,
+    StructureReference,
+    allocate_scratch,
+    allocate_state,
+)
+from warpsph.sampling import SampledSet
+from warpsph.sampling.clamps import onto_surface
+from warpsph.sampling.initial_state import initial_field
+from warpsph.sampling.kinematics import RigidMotion, rigid_motion
+from warpsph.sampling.loads import inside, specific_load
+from warpsph.sampling.scene_lattices import lattices_of
+from warpsph.sampling.walls import period_of
+from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.schema import Scene
+from warpsph.scene.structures import Load
+from warpsph.scene.types import AXES
+
+
+@dataclass(frozen=True)
+class Body:
+    """A structure of the scene and where its particles are: `first` .. `first + count - 1`.
+
+    `position` (count, dim) [m] at rest is that of the sampled lattice, but for clamped particles at a surface.
+    """
+
+    name: str
+    sampled: SampledSet
+    first: int
+    position: np.ndarray
+
+    @property
+    def count(self) -> int:
+        return len(self.sampled.position)
+
+    @property
+    def range(self) -> slice:
+        return slice(self.first, self.first + self.count)
+
+
+@dataclass(frozen=True)
+class HeldRegion:
+    """A clamp with the indices of its particles; `motion` is None where it rests."""
+
+    structure: str
+    name: str
+    particles: np.ndarray
+    motion: RigidMotion | None
+
+
+@dataclass(frozen=True)
+class StructureParts:
+    """Structures, assembled. `factors` are the time laws of the loads, expressions in t, in their order."""
+
+    model: StructureModel
+    bodies: tuple[Body, ...]
+    clamps: tuple[HeldRegion, ...]
+    factors: tuple[str, ...]
+    bonds: Bonds
+    mass: np.ndarray
+
+
+def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> StructureParts:
+    """Allocate everything that the structures of the scene need and bind their passes. Raises SceneError."""
+    _refuse_unknown_laws(scene)
+    arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
+    bodies = _bodies(scene, sets)
+    volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
+    clamps = tuple(_clamps(scene, bodies))
+    bonds = _bonds(scene, bodies, volume, _rigid(scene, clamps, len(volume)), launcher)
+    density = np.concatenate([np.full(b.count, scene.structures[b.name].material.density) for b in bodies])
+    mass = density * volume
+    loads = list(_loads(scene, bodies))
+    options = StructureOptions(
+        arithmetic=arithmetic,
+        moving_clamps=any(clamp.motion for clamp in clamps),
+        loads=len(loads),
+        damped=any(s.damping > 0.0 for s in scene.structures.values()) or is_static(scene),
+        contact=scene.contact is not None,
+        thin=bool(bonds.thin.any()),
+    )
+    ranges = _law_ranges(scene, bodies)
+    blocks = sum(one.blocks for one in ranges)
+    moving = sum(clamp.motion is not None for clamp in clamps)
+    device = launcher.device
+    model = StructureModel(
+        launcher,
+        options,
+        ranges,
+        scene.gravity,
+        _reference(scene, arithmetic, bodies, bonds, volume, clamps, [load for _, load in loads], device),
+        allocate_state(arithmetic, len(volume), device),
+        allocate_scratch(options, len(volume), blocks, moving, device),
+    )
+    _fill_state(scene, bodies, clamps, model)
+    return StructureParts(model, bodies, clamps, tuple(spec.factor for spec, _ in loads), bonds, mass)
+
+
+def is_static(scene: Scene) -> bool:
+    """Whether the scene asks for equilibria instead of motion."""
+    return scene.numerics.structure.solution.type == "static"
+
+
+def bond_radius(scene: Scene) -> float:
+    """Reach of the bonds of structures [m]."""
+    numerics = scene.numerics
+    return numerics.support_over_h * numerics.structure.h_over_dp * scene.spacing
+
+
+def _refuse_unknown_laws(scene: Scene) -> None:
+    problems = [
+        Problem.at(f"structures.{name}.material.law", f"there is no law {law!r}", ", ".join(LAWS), law)
+        for name, structure in scene.structures.items()
+        if (law := structure.material.law) not in LAWS
+    ]
+    if problems:
+        raise SceneError(problems)
+
+
+def _bodies(scene: Scene, sets: Sequence[SampledSet]) -> tuple[Body, ...]:
+    """Structures with those of one law side by side, otherwise in the order of the scene."""
+    bodies, first = [], 0
+    ordered = sorted(
+        (s for s in sets if s.kind == "structure"), key=lambda sampled: _code_of(scene, sampled.name)
+    )
+    for sampled in ordered:
+        bodies.append(Body(sampled.name, sampled, first, _rest_position(scene, sampled)))
+        first += len(sampled.position)
+    return tuple(bodies)
+
+
+def _rest_position(scene: Scene, sampled: SampledSet) -> np.ndarray:
+    """Positions (n, dim) [m] with the particles at the surface of whole clamps on that surface."""
+    position = sampled.position
+    for clamp in scene.structures[sampled.name].clamps.values():
+        if clamp.is_whole:
+            chosen = inside(clamp.region, sampled.position, scene.spacing)
+            position = onto_surface(clamp.region, position, chosen, scene.spacing)
+    return position
+
+
+def _code_of(scene: Scene, name: str) -> tuple[str, bool]:
+    structure = scene.structures[name]
+    return structure.material.law, structure.plane == "stress"
+
+
+def _law_ranges(scene: Scene, bodies: Sequence[Body]) -> list[LawRange]:
+    ranges = []
+    for (law, plane_stress), group in groupby(bodies, key=lambda body: _code_of(scene, body.name)):
+        members = list(group)
+        ranges.append(LawRange(law, plane_stress, members[0].first, sum(body.count for body in members)))
+    return ranges
+
+
+def _bonds(
+    scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray, launcher: Launcher
+) -> Bonds:
+    dim, smoothing = scene.dimension, scene.numerics.kernel
+    h = scene.numerics.structure.h_over_dp * scene.spacing
+    norm = SMOOTHING_KERNELS[smoothing].norm(dim, h) / h**2
+
+    def weights(length: np.ndarray) -> np.ndarray:
+        lengths = wp.array(length, dtype=wp.float64, device=launcher.device)
+        found = wp.zeros_like(lengths)
+        kernel = make_bond_weights(dim, smoothing)
+        launcher.bind("bonds", kernel, wp.float64(norm), wp.float64(1.0 / h), lengths, found).run(len(length))
+        return found.numpy()
+
+    periods = np.zeros(dim)
+    for axis, (low, high) in period_of(scene).items():
+        periods[axis] = high - low
+    positions = [body.position for body in bodies]
+    return make_bonds(positions, volume, rigid, bond_radius(scene), periods.tolist(), weights)
+
+
+def _clamps(scene: Scene, bodies: Sequence[Body]) -> Iterator[HeldRegion]:
+    for body in bodies:
+        for name, clamp in scene.structures[body.name].clamps.items():
+            chosen = inside(clamp.region, body.sampled.position, scene.spacing)
+            key = f"structures.{body.name}.clamps.{name}"
+            if not chosen.any():
+                message = "no particle of the structure lies there"
+                allowed = "a shape that reaches into the structure"
+                raise SceneError([Problem.at(f"{key}.region", message, allowed)])
+            motion = rigid_motion(scene, clamp.motion, f"{key}.motion") if clamp.motion else None
+            yield HeldRegion(body.name, name, body.first + np.flatnonzero(chosen), motion)
+
+
+def _loads(scene: Scene, bodies: Sequence[Body]) -> Iterator[tuple[Load, tuple[Body, np.ndarray]]]:
+    """Every load with its body and its force per mass on the particles of that body."""
+    lattices = lattices_of(scene)
+    for body in bodies:
+        structure = scene.structures[body.name]
+        mass = structure.material.density * body.sampled.volume
+        for name, load in structure.loads.items():
+            key = f"structures.{body.name}.loads.{name}"
+            place = (structure.shape, body.sampled.position, mass, lattices[body.name], key)
+            yield load, (body, specific_load(load, *place))
+
+
+def _reference(
+    scene: Scene,
+    arithmetic: Arithmetic,
+    bodies: Sequence[Body],
+    bonds: Bonds,
+    volume: np.ndarray,
+    clamps: Sequence[HeldRegion],
+    loads: Sequence[tuple[Body, np.ndarray]],
+    device: Any,
+) -> StructureReference:
+    count, dim = len(volume), scene.dimension
+    free, clamp_index = _constraints(scene, clamps, count)
+    table = np.zeros((max(len(loads), 1), count if loads else 1, dim))
+    for row, (body, specific) in enumerate(loads):
+        table[row, body.range] = specific
+    materials = [_material(scene, arithmetic, body.name) for body in bodies]
+    owner = np.repeat(np.arange(len(bodies)), [body.count for body in bodies])
+    bond_records = np.concatenate([bonds.vector, bonds.weight[..., None]], axis=2)
+
+    def array(values: np.ndarray, dtype: Any) -> wp.array:
+        return wp.array(np.ascontiguousarray(values), dtype=dtype, device=device)
+
+    return StructureReference(
+        position=array(np.concatenate([body.position for body in bodies]), arithmetic.point),
+        volume=array(volume, arithmetic.real),
+        structure=array(owner, wp.int32),
+        materials=wp.array(materials, dtype=make_material_struct(arithmetic), device=device),
+        neighbours=row_array(bonds.neighbour, wp.int32, device),
+        bonds=row_array(bond_records, arithmetic.record, device),
+        ends=wp.array(np.ascontiguousarray(bonds.ends), dtype=wp.int32, ndim=2, device=device),
+        correction=array(bonds.correction, make_matrix(arithmetic)),
+        thin_normal=array(np.column_stack([bonds.normal, bonds.seen]), arithmetic.record),
+        free=array(free, arithmetic.vector),
+        clamp=array(clamp_index, wp.int32),
+        load=array(table, arithmetic.vector),
+    )
+
+
+def _material(scene: Scene, arithmetic: Arithmetic, name: str) -> Any:
+    structure = scene.structures[name]
+    material, numbers = structure.material, make_material_struct(arithmetic)()
+    numbers.lame, numbers.shear_modulus = material.lame, material.shear_modulus
+    numbers.bulk_modulus = material.lame + 2.0 / 3.0 * material.shear_modulus
+    numbers.density = material.density
+    numbers.penalty = scene.numerics.structure.hourglass * material.youngs_modulus
+    numbers.damping = structure.damping
+    return numbers
+
+
+def _rigid(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> np.ndarray:
+    """Whether a clamp prescribes all components of each particle's displacement, shape (n,)."""
+    rigid = np.zeros(count, dtype=bool)
+    for clamp in clamps:
+        if scene.structures[clamp.structure].clamps[clamp.name].is_whole:
+            rigid[clamp.particles] = True
+    return rigid
+
+
+def _constraints(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> tuple[np.ndarray, np.ndarray]:
+    """Mask of free components (n, dim), and the index (n,) of each particle's moving clamp, -1 without one.
+
+    Where clamps overlap the later one in the scene moves the particle.
+    """
+    free, index = np.ones((count, scene.dimension)), np.full(count, -1)
+    moving = [clamp for clamp in clamps if clamp.motion is not None]
+    for clamp in clamps:
+        axes = scene.structures[clamp.structure].clamps[clamp.name].axes
+        held = [AXES.index(axis) for axis in axes or AXES[: scene.dimension]]
+        free[clamp.particles[:, None], held] = 0.0
+        if clamp.motion is not None:
+            index[clamp.particles] = moving.index(clamp)
+    return free, index
+
+
+def _fill_state(
+    scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], model: StructureModel
+) -> None:
+    """Initial displacement and velocity; clamped components begin at rest or as their clamp moves at time zero."""
+    free = model.reference.free.numpy()
+    shifts = [
+        initial_field(
+            scene.structures[b.name].displacement, b.sampled.position, f"structures.{b.name}.displacement"
+        )
+        for b in bodies
+    ]
+    displacement = np.concatenate(shifts) * free
+    velocity = np.concatenate([b.sampled.velocity for b in bodies]) * free
+    rest = np.concatenate([b.position for b in bodies])
+    for clamp in clamps:
+        if clamp.motion is not None:
+            pose, held = clamp.motion(0.0), clamp.particles
+            points, prescribed = rest[held], 1.0 - free[held]
+            displacement[held] += prescribed * (pose.position_of(points) - points)
+            velocity[held] += prescribed * pose.velocity_of(points)
+    write_array(model.state.displacement, displacement)
+    write_array(model.state.velocity, velocity)

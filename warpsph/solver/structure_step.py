@@ -1,0 +1,159 @@
+"""The step of structures alone, as a page of verbs.
+
+Velocity Verlet (kick, drift, kick): of second order, symplectic, one force sum a step. A few steps of one size are made
+between two looks of the host at the state.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+from warpsph_kernels.structure import DAMPING, STEP
+from warpsph_kernels.structure_survey import FAULTS, FLATTENING, SPEED, STIFFENING, WORST
+
+from warpsph.particles.state import host_view, write_array
+from warpsph.physics.structure import SUB_STEPS, arrays_in
+from warpsph.scene.schema import Scene
+from warpsph.solver.stability import largest_frequency
+from warpsph.solver.structure_assembly import StructureParts
+from warpsph.solver.system import StepReport
+from warpsph.solver.time_laws import TimeLaws
+
+STIFFNESS_GRADE = 1.1
+
+
+class StructureStepper:
+    """Advances structures in time."""
+
+    def __init__(self, scene: Scene, parts: StructureParts) -> None:
+        self._model = parts.model
+        self._cfl = scene.numerics.structure.cfl
+        self._max_step = scene.time.max_step or math.inf
+        self._laws = TimeLaws(parts)
+        self._extremes = np.zeros(5)
+        self.time = 0.0
+        self.target = math.inf
+        self._before: dict[str, np.ndarray] = {}
+
+    def start(self) -> None:
+        """Measure the stability limit at rest, then find the forces of the initial state."""
+        self._set_clock(0.0)
+        self.frequency = largest_frequency(self._model)
+        self._laws.write(self.time, 0.0)
+        self.find_forces()
+
+    def find_forces(self) -> None:
+        """Bring stresses, forces and extremes to the time of the displacement."""
+        self._set_clock(0.0)
+        self._model.strain()
+        self._model.accelerate()
+        self.survey()
+
+    def step(self) -> StepReport:
+        """Make a few steps of one size."""
+        self.keep_state()
+        dt, count, limit = self.choose_step()
+        self.begin(dt)
+        for _ in range(count):
+            self.sub_step()
+        self.survey()
+        self.time = self.target if limit == "frame" else self.time + count * dt
+        return StepReport(dt, limit, count)
+
+    def sub_step(self) -> None:
+        """Advance by one step of the size that was begun with."""
+        self._model.drift()
+        self._model.strain()
+        self._model.accelerate()
+        self._model.tick()
+
+    def choose_step(self) -> tuple[float, int, str]:
+        """Size [s], number and limit of the next steps: as the stiffness of the present state allows.
+
+        All steps up to the time to land on have one size. A size that changes to and fro would pump energy into the
+        fastest waves, for which a step is a large part of their period.
+        """
+        dt, limit = self.stable_step, "elastic"
+        if self._max_step < dt:
+            dt, limit = self._max_step, "max_step"
+        left = self.target - self.time
+        if math.isinf(left):
+            return dt, SUB_STEPS, limit
+        count = max(math.ceil(left / dt * (1.0 - 1e-9)), 1)
+        return left / count, min(count, SUB_STEPS), "frame" if count <= SUB_STEPS else limit
+
+    @property
+    def stable_step(self) -> float:
+        """The step that the stiffness of the present state allows [s]: cfl 2 / omega.
+
+        The stiffness is rounded up to a power of STIFFNESS_GRADE, so that the step seldom changes.
+        """
+        stiffening = max(float(self._extremes[STIFFENING]), 1.0)
+        grade = math.ceil(math.log(stiffening) / math.log(STIFFNESS_GRADE) - 1e-3)
+        return self._cfl * 2.0 / (self.frequency * STIFFNESS_GRADE ** (0.5 * grade))
+
+    def begin(self, dt: float, damping: float = 0.0) -> None:
+        """Set step size and damping, and the values of time laws for the coming steps."""
+        self._set_clock(dt, damping)
+        self._laws.write(self.time, dt)
+
+    def survey(self) -> None:
+        """Find the extremes of the state."""
+        self._model.survey()
+        table = host_view(self._model.scratch.extremes)
+        self._extremes = table.max(axis=0)
+        self._extremes[WORST] = table[int(np.argmax(table[:, FLATTENING])), WORST]
+        self._extremes[FAULTS] = table[:, FAULTS].sum()
+
+    @property
+    def extremes(self) -> Mapping[str, float]:
+        """Largest speed [m/s], largest stiffening [1] and least J, negated [1]."""
+        return {
+            "speed": math.sqrt(self._extremes[SPEED]),
+            "stiffening": float(self._extremes[STIFFENING]),
+            "flattening": float(self._extremes[FLATTENING]),
+        }
+
+    @property
+    def failed(self) -> bool:
+        """Whether some particle is inverted or not finite."""
+        return bool(self.faults or self._extremes[FLATTENING] >= 0.0)
+
+    @property
+    def faults(self) -> int:
+        """Particles that are not finite."""
+        return int(self._extremes[FAULTS])
+
+    @property
+    def flattest(self) -> int:
+        """The particle with the least J."""
+        return int(self._extremes[WORST])
+
+    def keep_state(self) -> None:
+        """Remember the present state, to return to it if the coming steps fail."""
+        self._before = {name: np.array(host_view(a)) for name, a in arrays_in(self._model.state).items()}
+
+    def return_to_kept(self) -> None:
+        """Go back to the state before the last steps."""
+        for name, array in arrays_in(self._model.state).items():
+            write_array(array, self._before[name])
+
+    def _set_clock(self, dt: float, damping: float = 0.0) -> None:
+        values = np.zeros(3)
+        values[STEP], values[DAMPING] = dt, damping
+        write_array(self._model.clock, values)
+
+    def save(self) -> dict[str, Any]:
+        """The stepper's own part of a checkpoint."""
+        return {"time": self.time, "frequency": self.frequency}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Go on from what `save` returned; the state's arrays have been restored."""
+        self.time, self.frequency = float(saved["time"]), float(saved["frequency"])
+        self._laws.write(self.time, 0.0)
+        self._set_clock(0.0)
+        self._model.strain()
+        self.survey()

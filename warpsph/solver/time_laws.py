@@ -1,0 +1,47 @@
+"""Values of time laws for the coming steps: factors of loads, poses of moving clamps."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from warpsph.particles.state import host_view
+from warpsph.physics.structure import SUB_STEPS
+from warpsph.sampling.kinematics import Pose
+from warpsph.scene.expressions import evaluate
+from warpsph.scene.placement import cross_matrix
+from warpsph.solver.structure_assembly import StructureParts
+
+
+class TimeLaws:
+    """Writes the tables that the kernels read, one row for each time from now on."""
+
+    def __init__(self, parts: StructureParts) -> None:
+        self._model = parts.model
+        self._factors = parts.factors
+        self._motions = [clamp.motion for clamp in parts.clamps if clamp.motion is not None]
+        self._load_factor = np.array(host_view(self._model.scratch.load_factor))
+        self._prescriptions = np.array(host_view(self._model.scratch.prescriptions))
+
+    def write(self, time: float, dt: float) -> None:
+        """Tabulate all laws at time, time + dt, ... [s]."""
+        if not self._model.has_time_laws:
+            return
+        times = time + dt * np.arange(SUB_STEPS + 1)
+        for column, factor in enumerate(self._factors):
+            self._load_factor[:, column] = evaluate(factor, {"t": times})
+        for column, motion in enumerate(self._motions):
+            for row in range(1 if dt == 0.0 else len(times)):
+                self._write_pose(row, column, motion(float(times[row])))
+        if dt == 0.0 and self._motions:
+            self._prescriptions[1:] = self._prescriptions[0]
+        self._model.scratch.load_factor.assign(self._load_factor)
+        self._model.scratch.prescriptions.assign(self._prescriptions)
+
+    def _write_pose(self, row: int, column: int, pose: Pose) -> None:
+        dim = len(pose.translation)
+        spin, growth = cross_matrix(pose.angular_velocity), cross_matrix(pose.angular_acceleration)
+        entry = self._prescriptions[row, column]
+        entry["rotation"], entry["shift"] = pose.rotation, pose.translation
+        entry["rotation_rate"] = spin[:dim, :dim] @ pose.rotation
+        entry["rotation_acceleration"] = (growth + spin @ spin)[:dim, :dim] @ pose.rotation
+        entry["shift_rate"], entry["shift_acceleration"] = pose.velocity, pose.acceleration
