@@ -46,6 +46,8 @@ class FluidOptions:
     """What spreads the particles evenly: none, transport_velocity or shifting."""
     density: str = "continuity"
     """Where the density comes from: continuity, summation or mixed."""
+    kernel_gradient: str = "plain"
+    """First derivatives of pressure and velocity: plain, renormalised or finite_particle."""
 
     @property
     def has_barrier(self) -> bool:

@@ -9,6 +9,7 @@ from warpsph_kernels.cells import make_cell_kernels
 from warpsph_kernels.clock import make_clock_kernels
 from warpsph_kernels.density_gradient import make_density_gradient
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.gradient_correction import make_finite_particle_kernels, make_renormalised_kernels
 from warpsph_kernels.particle_order import make_order_kernels
 from warpsph_kernels.stress import make_stress_kernels
 from warpsph_kernels.structure import StructureOptions, make_stress_kernel, make_structure_kernels
@@ -18,7 +19,7 @@ from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
 SM_80 = 80
-CONCEPTS = ("stress", "density_gradient", "order", "summation")
+CONCEPTS = ("stress", "density_gradient", "order", "summation", "gradient_correction")
 
 
 @pytest.mark.parametrize(
@@ -56,6 +57,7 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
         wall_friction=True,
         particle_order="transport_velocity" if dimension == 2 else "shifting",
         density="mixed",
+        kernel_gradient="renormalised" if dimension == 2 else "finite_particle",
         stress="carreau" if dimension == 2 else "sub_particle_scale",
     )
     make_fluid_kernels(options)
@@ -65,6 +67,8 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     make_stress_kernels(options)
     make_density_gradient(options)
     make_order_kernels(options)
+    make_correction = make_renormalised_kernels if dimension == 2 else make_finite_particle_kernels
+    make_correction(options)
     make_sum_density(options)
     cells = make_cell_kernels(arithmetic, periodic).module
     clock = make_clock_kernels(arithmetic, options.state).module

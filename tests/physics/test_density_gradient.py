@@ -18,11 +18,11 @@ def test_a_linear_density_has_its_gradient_and_is_not_diffused(dimension):
     sim.step()
     count = len(sim.frame().sets[0].fields["id"])
     slope = -1000.0 * GRAVITY / sim.sound_speed**2
-    gradient = sim._parts.fluid._density_gradient.gradient.numpy()
+    gradient = sim.system.parts.fluid._density_gradient.gradient.numpy()
     expected = np.zeros_like(gradient)
     expected[:, -1] = slope
     assert gradient == pytest.approx(expected, abs=1e-6 * abs(slope))
-    rate = sim._parts.assembly.state.density_rate.numpy()[:count]
+    rate = sim.system.parts.assembly.state.density_rate.numpy()[:count]
     scale = sim.sound_speed * abs(slope)
     assert np.abs(rate).max() < 1e-6 * scale
 
@@ -32,5 +32,5 @@ def test_without_the_gradient_the_surface_is_diffused():
     numerics = LINEAR | {"density_diffusion": {"type": "molteni_colagrossi"}}
     sim = Simulation(still_tank(numerics=numerics, time={"max_step": 1e-9}), device="cpu")
     sim.step()
-    rate = sim._parts.assembly.state.density_rate.numpy()
+    rate = sim.system.parts.assembly.state.density_rate.numpy()
     assert np.abs(rate).max() > 0.02 * 1000.0 * GRAVITY / sim.sound_speed

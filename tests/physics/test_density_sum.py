@@ -37,10 +37,10 @@ def test_the_density_is_the_sum_over_all_particles(dimension):
     )
     position = sim.array("position").numpy()
     position += np.random.default_rng(2).uniform(-0.02, 0.02, position.shape)
-    sim._stepper.renew_lists()
+    sim.system._stepper.renew_lists()
     before = sim.array("position").numpy().copy()
-    sim._parts.fluid.synchronise()
-    sim._parts.fluid._density_sum.find()
+    sim.system.parts.fluid.synchronise()
+    sim.system.parts.fluid._density_sum.find()
     found = 1.0 + sim.array("density_deviation").numpy() / 1000.0
     # Positions are kept in double precision; the deviation is one minus a sum of some ten terms.
     assert found == pytest.approx(sum_over_all(before, sim.scene), rel=1e-12)

@@ -93,7 +93,7 @@ def test_momentum_is_conserved_to_rounding(dimension, order, precision, rounding
     before = momentum()
     for _ in range(20):
         sim.step()
-    assert np.abs(sim._parts.fluid._order.shift.numpy()).max() > 0.0
+    assert np.abs(sim.system.parts.fluid._order.shift.numpy()).max() > 0.0
     assert np.abs(momentum() - before).max() < rounding * scale
 
 

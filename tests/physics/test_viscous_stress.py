@@ -71,7 +71,7 @@ def test_sub_particle_stress_of_a_uniform_strain(dimension):
     spacing, rate = 0.1, 0.5
     scene = free_drop(dimension, spacing, numerics={"viscosity": {"type": "sub_particle_scale"}})
     sim = Simulation(scene, device="cpu")
-    model = sim._parts.fluid._stress
+    model = sim.system.parts.fluid._stress
     model.find()
     diagonal = np.array([1.0, -1.0, 0.0])[:dimension]
     nu_t = (0.12 * spacing) ** 2 * 2.0 * rate
@@ -90,7 +90,7 @@ def test_the_force_on_the_walls_is_the_opposite_of_what_the_fluid_receives():
     sim = Simulation(channel(10, lid_speed=LID_SPEED, numerics=numerics), device="cpu")
     sim.advance(0.01)
     frame = sim.frame(["mass", "force"], ordered=False)
-    sim._parts.fluid.accelerate()
+    sim.system.parts.fluid.accelerate()
     mass = frame.sets[0].fields["mass"]
     received = mass @ sim.array("acceleration").numpy()[: len(mass)]
     exerted = sum(wall.fields["force"].sum(axis=0) for wall in frame.of_kind("boundary"))
@@ -104,10 +104,10 @@ def test_carried_viscosity_follows_its_particle():
     sim = Simulation(scene, device="cpu")
     start = {}
     for moment in range(2):
-        carried = sim._parts.fluid._stress.carried.numpy()[np.argsort(sim.array("id").numpy())]
+        carried = sim.system.parts.fluid._stress.carried.numpy()[np.argsort(sim.array("id").numpy())]
         start.setdefault(moment, carried)
         sim.advance(0.3)
-        sim._stepper.renew_lists()
+        sim.system._stepper.renew_lists()
     position = Simulation(scene, device="cpu").frame().sets[0].fields["position"]
     assert start[0] == pytest.approx(1.0 + position @ [1.0, 10.0], rel=1e-6)
     assert np.array_equal(start[0], start[1])

@@ -26,6 +26,7 @@ UNITS = {
     "shift": "m/s",
     "next_shift": "m/s",
     "coverage": "1",
+    "gradient_excess": "1",
     "density_gradient": "kg/m^(dim+1)",
 }
 

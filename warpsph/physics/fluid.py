@@ -14,6 +14,7 @@ from warpsph.laws.viscosities import VISCOSITY_LAWS
 from warpsph.particles.neighbours import SearchSpace
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.physics.density_gradient import DensityGradient
+from warpsph.physics.gradient_correction import GradientCorrection
 from warpsph.physics.material import largest_kinematic_viscosity, material, padded, smoothing_length
 from warpsph.physics.particle_order import ParticleOrderModel
 from warpsph.physics.stress import StressModel
@@ -42,6 +43,7 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
         stress=_stress(scene),
         particle_order=numerics.particle_order.type,
         density=numerics.density,
+        kernel_gradient=numerics.kernel_gradient,
         wall=numerics.wall.type if has_walls else "none",
         wall_suction=getattr(numerics.wall, "suction", True),
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
@@ -128,6 +130,9 @@ class FluidModel:
             self._density_gradient = DensityGradient(assembly, lists)
         if options.density != "continuity":
             self._density_sum = DensitySum(assembly, lists, scene)
+        self._correction: GradientCorrection | None = None
+        if options.kernel_gradient != "plain":
+            self._correction = GradientCorrection(assembly, lists)
         self._kernels = make_fluid_kernels(options)
         self._none = wp.zeros(1, dtype=options.arithmetic.vector, device=assembly.launcher.device)
         self._bind_points()
@@ -142,8 +147,8 @@ class FluidModel:
     @property
     def arrays(self) -> dict[str, wp.array]:
         """Arrays that only some scenes have, by name."""
-        parts = [part.arrays for part in (self._stress, self._order, self._density_gradient) if part]
-        return {name: array for arrays in parts for name, array in arrays.items()}
+        parts = (self._stress, self._order, self._density_gradient, self._correction)
+        return {name: array for part in parts if part for name, array in part.arrays.items()}
 
     @property
     def passes(self) -> list[str]:
@@ -153,7 +158,8 @@ class FluidModel:
         order = self._order.passes if self._order else []
         gradient = ["density gradient"] if self._density_gradient else []
         rate = ["update density"] if self._has_rate else []
-        return [*summed, *stress, "accelerate", *order, "kick and drift", *gradient, *rate]
+        corrected = ["gradient correction"] if self._correction else []
+        return [*summed, *stress, "accelerate", *corrected, *order, "kick and drift", *gradient, *rate]
 
     @property
     def count(self) -> int:
@@ -166,7 +172,8 @@ class FluidModel:
 
     def bind_lists(self) -> None:
         """Build the passes that read neighbour lists; needed again when the rows have grown."""
-        for part in (self._stress, self._order, self._density_gradient, self._density_sum):
+        parts = (self._stress, self._order, self._density_gradient, self._density_sum, self._correction)
+        for part in parts:
             if part:
                 part.bind_lists()
         self._bind_sums()
@@ -183,6 +190,8 @@ class FluidModel:
         if self._stress:
             self._stress.find()
         self._accelerate.run(self.count)
+        if self._correction:
+            self._correction.correct_pressure()
         if self._stress:
             self._stress.add()
         if self._order:
@@ -198,6 +207,8 @@ class FluidModel:
             self._density_gradient.find()
         if self._has_rate:
             self._update_density.run(self.count)
+            if self._correction:
+                self._correction.correct_divergence()
 
     def react(self, force: wp.array) -> None:
         """Add what beside pair forces acts on each wall particle [N], shape (walls,)."""

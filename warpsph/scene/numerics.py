@@ -90,6 +90,11 @@ class Numerics(SceneModel):
     and begins at rest density; or the sum inside and the continuity equation near a free surface.
     Default: continuity."""
 
+    kernel_gradient: Literal["plain", "renormalised", "finite_particle"] = "plain"
+    """First derivatives of pressure and velocity: plain sums; renormalised, exact for linear velocities; or of the
+    finite-particle form, exact for linear pressures too, which conserves no momentum and does not hold a free surface.
+    Default: plain."""
+
     density_diffusion: DensityDiffusion = FourtakasDiffusion()
     """Diffusion in the continuity equation. Default: {type: fourtakas, delta: 0.1}."""
 

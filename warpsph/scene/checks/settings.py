@@ -116,6 +116,11 @@ def _numerics_problems(scene: Scene) -> Iterator[Problem]:
     if numerics.density == "summation" and numerics.density_diffusion.type != "none":
         message = "a density that is summed obeys no equation that could be diffused"
         yield Problem.at("numerics.density_diffusion.type", message, "none", numerics.density_diffusion.type)
+    if numerics.pressure_form == "riemann" and numerics.kernel_gradient == "finite_particle":
+        message = "the finite-particle form takes the place of the pressure force, which riemann is a form of"
+        yield Problem.at(
+            "numerics.kernel_gradient", message, "plain or renormalised", numerics.kernel_gradient
+        )
     if numerics.state.type == "custom":
         yield from _custom_problems("numerics.state", numerics.state, STATE_LAWS, BUILT_IN_STATES)
     if numerics.viscosity.type == "custom":
