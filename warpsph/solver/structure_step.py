@@ -23,6 +23,7 @@ from warpsph.solver.system import StepReport
 from warpsph.solver.time_laws import TimeLaws
 
 STIFFNESS_GRADE = 1.1
+"""Ratio of two stiffnesses between which the step does not tell a difference."""
 SHORTEST = 1000.0
 """By how much a step may be shortened where the state has changed faster than was foreseen."""
 
