@@ -57,7 +57,7 @@ class RelaxationStepper(StructureStepper):
         dt = self.stable_step
         self._laws.write(self.time + ramp * (at - self.time), 0.0)
         self._relax(SUB_STEPS, dt)
-        if self.failed or dt * self._cfl > self.stable_step:
+        if self.failed or self.is_unstable(dt):
             self.return_to_kept()
             self.find_forces_again()
             self._relax_with_care()

@@ -23,6 +23,7 @@ from warpsph.solver.system import StepReport
 from warpsph.solver.time_laws import TimeLaws
 
 STIFFNESS_GRADE = 1.1
+"""Ratio of two stiffnesses between which the step does not tell a difference."""
 SHORTEST = 1000.0
 """By how much a step may be shortened where the state has changed faster than was foreseen."""
 
@@ -70,7 +71,7 @@ class StructureStepper:
         for _ in range(count):
             self.sub_step()
         self.survey()
-        if self.failed or dt * self._cfl > self.stable_step:
+        if self.failed or self.is_unstable(dt):
             self.return_to_kept()
             count = self.step_with_care(end, dt / SHORTEST)
         else:
@@ -85,12 +86,13 @@ class StructureStepper:
         self.find_forces_again()
         count = 0
         while self.time < end and not self.failed:
-            dt = min(self.stable_step, end - self.time)
-            self.stuck = dt < shortest and dt < end - self.time
+            left = math.ceil((end - self.time) / self.stable_step * (1.0 - 1e-9))
+            dt = (end - self.time) / max(left, 1)
+            self.stuck = left > 1 and dt < shortest
             self.begin(dt)
             self.sub_step()
             self.survey()
-            self.time = end if dt == end - self.time else self.time + dt
+            self.time = end if left <= 1 else self.time + dt
             count += 1
         return count
 
@@ -125,6 +127,10 @@ class StructureStepper:
         stiffening = max(float(self._extremes[STIFFENING]), 1.0)
         grade = math.ceil(math.log(stiffening) / math.log(STIFFNESS_GRADE) - 1e-3)
         return self._cfl * 2.0 / (self.frequency * STIFFNESS_GRADE ** (0.5 * grade))
+
+    def is_unstable(self, dt: float) -> bool:
+        """Whether a step [s] is beyond the stability limit of the present state."""
+        return dt * self.frequency * math.sqrt(max(self._extremes[STIFFENING], 1.0)) > 2.0
 
     def begin(self, dt: float, damping: float = 0.0) -> None:
         """Set step size and damping, and the values of time laws for the coming steps."""
