@@ -53,7 +53,13 @@ def test_stage_says_unit_axis_rate_and_range(stage, scene):
 
 @pytest.mark.parametrize(
     ("gravity", "axis"),
-    [((0.0, -9.81), "Y"), ((0.0, -9.81, 0.0), "Y"), ((0.0, 0.5, -9.8), "Z"), ((9.81, 0.0, 0.0), "Y")],
+    [
+        ((0.0, -9.81), "Y"),
+        ((0.0, -9.81, 0.0), "Y"),
+        ((0.0, 0.5, -9.8), "Z"),
+        ((9.81, 0.0, 0.0), "Y"),
+        ((0.0, 0.0, 0.0), "Z"),
+    ],
 )
 def test_up_is_against_gravity_where_usd_can_say_so(gravity, axis):
     assert up_axis(gravity) == axis

@@ -101,8 +101,9 @@ def set_stage_metadata(layer: Sdf.Layer, scene: Scene) -> None:
 
 
 def up_axis(gravity: Sequence[float]) -> str:
-    """Z where gravity acts mostly along z, otherwise Y; USD knows no other."""
-    return UsdGeom.Tokens.z if int(np.argmax(np.abs(gravity))) == 2 else UsdGeom.Tokens.y
+    """Z where gravity acts mostly along z or space has no gravity, otherwise Y; USD knows no other."""
+    strongest = int(np.argmax(np.abs(gravity))) if np.any(gravity) else len(gravity) - 1
+    return UsdGeom.Tokens.z if strongest == 2 else UsdGeom.Tokens.y
 
 
 def add_samples(layer: Sdf.Layer, path: Sdf.Path, values: Mapping[str, object], time_code: float) -> None:
