@@ -27,6 +27,18 @@ THICKNESS = 0.02
 SMOOTHING = (0.7, 0.8, 0.9, 1.0, 1.3)
 HOURGLASS = (0.1, 0.3, 0.4, 0.5, 0.7)
 DEFAULT = (0.8, 0.4)
+COLUMNS = (
+    "t/dp",
+    "h/dp",
+    "hourglass",
+    "first minimum",
+    "period",
+    "hourglass energy",
+    "neighbours",
+    "steps",
+    "CPU [s]",
+    "M particle-steps/s",
+)
 
 
 @dataclass(frozen=True)
@@ -40,6 +52,7 @@ class Trial:
     period: float
     share: float
     neighbours: float
+    particles: int
     steps: int
     seconds: float
 
@@ -71,6 +84,7 @@ def run_trial(layers: int, smoothing: float, hourglass: float) -> Trial:
         _signed(rows["period"]),
         energies["hourglass"] / elastic,
         summary["neighbours"],
+        summary["particles"],
         summary["steps"]["count"],
         seconds,
     )
@@ -93,8 +107,8 @@ def trials(layers: Iterable[int]) -> Iterator[Trial]:
 
 def table(rows: Iterable[Trial]) -> Iterator[str]:
     """The rows as a table in Markdown, the default in bold."""
-    yield "| t/dp | h/dp | hourglass | first minimum | period | hourglass energy | neighbours | steps | CPU [s] |"
-    yield "| --- | --- | --- | --- | --- | --- | --- | --- | --- |"
+    yield f"| {' | '.join(COLUMNS)} |"
+    yield f"| {' | '.join(['---'] * len(COLUMNS))} |"
     for r in rows:
         mark = "**" if (r.smoothing, r.hourglass) == DEFAULT else ""
         cells = (
@@ -107,6 +121,7 @@ def table(rows: Iterable[Trial]) -> Iterator[str]:
             f"{r.neighbours:.1f}",
             str(r.steps),
             f"{r.seconds:.1f}",
+            f"{r.steps * r.particles / r.seconds / 1e6:.1f}",
         )
         yield f"| {' | '.join(cells)} |"
 
