@@ -7,6 +7,7 @@ if TYPE_CHECKING:
     from warpsph.extending import register_smoothing_kernel as register_smoothing_kernel
     from warpsph.extending import register_state as register_state
     from warpsph.extending import register_viscosity as register_viscosity
+    from warpsph.physics.registration import register_material as register_material
     from warpsph.scene.loader import load_scene as load_scene
     from warpsph.scene.schema import Scene as Scene
     from warpsph.solver.run import run_scene as run_scene
@@ -17,6 +18,7 @@ __all__ = [
     "Scene",
     "Simulation",
     "load_scene",
+    "register_material",
     "register_smoothing_kernel",
     "register_state",
     "register_viscosity",
@@ -30,6 +32,7 @@ _HOMES = {
     "register_smoothing_kernel": "warpsph.extending",
     "register_state": "warpsph.extending",
     "register_viscosity": "warpsph.extending",
+    "register_material": "warpsph.physics.registration",
     "run_scene": "warpsph.solver.run",
 }
 

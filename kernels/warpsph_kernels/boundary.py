@@ -10,9 +10,10 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.fluid import FluidOptions, make_pair_force
-from warpsph_kernels.pair_terms import make_barrier, make_constants_struct
+from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
+from warpsph_kernels.wall_barriers import BARRIERS
 
 
 class WallKernels(NamedTuple):
@@ -38,7 +39,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     state = STATES[options.state].make(arithmetic)
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
-    barrier = make_barrier(arithmetic)
+    barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
 
     @wp.kernel(module=module, enable_backward=False)
     def extrapolate(
@@ -53,7 +54,10 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         friction: wp.array(dtype=record),
         position_pressure: wp.array(dtype=record),
     ):
-        """One wall particle: pressure and friction velocity from the fluid (Adami, Hu & Adams 2012, eqs. 23, 27)."""
+        """One wall particle: pressure and friction velocity from the fluid (Adami, Hu & Adams 2012, eqs. 23, 27).
+
+        Repulsive walls leave out the hydrostatic part: their pressure is the mean of Liu, Shao & Chang (2012).
+        """
         i = offset + wp.tid()
         w = first_wall + i
         xp_w = position_pressure[w]
@@ -76,7 +80,9 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         v_seen = unpack(velocity_volume[w])
         # A neighbour at the rim of the support has no weight in single precision: there is nothing to average.
         if weight > real(1.0e-6) * c.norm:
-            p_w = (pressure + wp.dot(c.gravity - acceleration[w], moment)) / weight
+            p_w = pressure / weight
+            if wp.static(options.wall != "repulsive"):
+                p_w += wp.dot(c.gravity - acceleration[w], moment) / weight
             if wp.static(not options.wall_suction):
                 p_w = wp.max(p_w, real(0.0))
             if wp.static(options.wall_friction):

@@ -39,16 +39,15 @@ def make_grid_struct(arithmetic: Arithmetic) -> Any:
 
 
 @cache
-def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
-    """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
-    dim = arithmetic.dimension
-    real, vector, point, integers = arithmetic.real, arithmetic.vector, arithmetic.point, arithmetic.integers
+def make_cell_functions(arithmetic: Arithmetic) -> tuple[Any, Any, Any]:
+    """Return the device functions of a walk through the cells around a place.
+
+    wrap(coordinate, count): a cell coordinate brought into the grid; cell_of(x, grid): the cell of a position in run
+    coordinates; row_base(cell, row, grid): the bucket at x = 0 of the row-th of the rows adjacent to a cell.
+    """
+    dim, real = arithmetic.dimension, arithmetic.real
+    vector, integers = arithmetic.vector, arithmetic.integers
     grid_type = make_grid_struct(arithmetic)
-    narrow = make_narrow(arithmetic)
-    separation = make_separation(arithmetic, periodic)
-    axes = "".join("p" if flag else "o" for flag in periodic)
-    module = f"warpsph_cells_{arithmetic.label}_{axes}"
-    rows = 3 ** (dim - 1)
 
     @wp.func
     def wrap(coordinate: int, count: int):
@@ -73,6 +72,22 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
             return y * grid.cells[0]
         z = wrap(cell[wp.static(dim - 1)] + row // 3 - 1, grid.cells[wp.static(dim - 1)])
         return (z * grid.cells[1] + y) * grid.cells[0]
+
+    return wrap, cell_of, row_base
+
+
+@cache
+def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
+    """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
+    dim = arithmetic.dimension
+    real, vector, point = arithmetic.real, arithmetic.vector, arithmetic.point
+    grid_type = make_grid_struct(arithmetic)
+    narrow = make_narrow(arithmetic)
+    separation = make_separation(arithmetic, periodic)
+    axes = "".join("p" if flag else "o" for flag in periodic)
+    module = f"warpsph_cells_{arithmetic.label}_{axes}"
+    rows = 3 ** (dim - 1)
+    wrap, cell_of, row_base = make_cell_functions(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
     def take_positions(
@@ -143,12 +158,14 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
         first_source: int,
         start: wp.array(dtype=wp.int32),
         segment: int,
+        continues: int,
         neighbours: wp.array2d(dtype=wp.int32),
         ends: wp.array2d(dtype=wp.int32),
     ):
         """One target particle: append all sources within the radius (but not itself) to its row.
 
-        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]. What does not fit into the row is
+        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]; if it `continues`, it has neighbours of an
+        earlier range already. What does not fit into the row is
         counted and not stored; the host then makes the rows longer and repeats.
         """
         i = offset + wp.tid()
@@ -159,6 +176,8 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
         found = int(0)
         if segment > 0:
             found = ends[i, segment - 1]
+        if continues > 0:
+            found = ends[i, segment]
         # Only at the ends of a row of cells do the three adjacent cells fall into separate ranges.
         at_end = cell[0] == 0 or cell[0] == grid.cells[0] - 1
         ranges = wp.where(at_end, 3, 1)

@@ -16,11 +16,11 @@ from warpsph_kernels.pair_terms import (
     DIFFUSIONS,
     PRESSURE_FORMS,
     VISCOSITIES,
-    make_barrier,
     make_constants_struct,
 )
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
+from warpsph_kernels.wall_barriers import BARRIERS
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class FluidOptions:
     density_diffusion: str
     viscosity: str
     wall: str
-    """Wall method: none, dynamic or extrapolated."""
+    """Wall method: none, dynamic, extrapolated, modified_dynamic or repulsive."""
     wall_suction: bool
-    """Whether extrapolated walls may have negative pressure."""
+    """Whether walls that are not dynamic may have negative pressure."""
     wall_friction: bool
     """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
     stress: str = "none"
@@ -51,8 +51,8 @@ class FluidOptions:
 
     @property
     def has_barrier(self) -> bool:
-        """Whether wall surfaces push back particles that come too near, see `make_barrier`."""
-        return self.wall == "extrapolated"
+        """Whether wall surfaces push back particles that come too near."""
+        return self.wall in BARRIERS
 
     @property
     def module(self) -> str:
@@ -119,7 +119,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     has_walls = options.wall != "none"
     shifts = options.particle_order != "none"
-    barrier = make_barrier(arithmetic)
+    barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
 
     @wp.kernel(module=module, enable_backward=False)
     def begin_step(

@@ -8,10 +8,9 @@ Laws are written in H, because in single precision F would have lost the small s
 In two dimensions a law comes in two states: plane strain (F_33 = 1) and plane stress (P_33 = 0).
 """
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
-from types import MappingProxyType
 from typing import Any
 
 import warp as wp
@@ -254,12 +253,10 @@ def make_split_neo_hookean(options: LawOptions) -> Any:
     return wp.func(split_neo_hookean)
 
 
-LAWS: Mapping[str, LawFactory] = MappingProxyType(
-    {
-        "st_venant_kirchhoff": make_st_venant_kirchhoff,
-        "neo_hookean": make_neo_hookean,
-        "split_neo_hookean": make_split_neo_hookean,
-        "linear_elastic": make_linear_elastic,
-    }
-)
-"""Constitutive law by its name in a scene."""
+LAWS: dict[str, LawFactory] = {
+    "st_venant_kirchhoff": make_st_venant_kirchhoff,
+    "neo_hookean": make_neo_hookean,
+    "split_neo_hookean": make_split_neo_hookean,
+    "linear_elastic": make_linear_elastic,
+}
+"""Constitutive law by its name in a scene; `warpsph.register_material` adds to it."""

@@ -52,7 +52,10 @@ def make_survey_kernel(options: StructureOptions, law: str, plane_stress: bool) 
     dim, real, vector, point = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.point
     matrix, material = make_matrix(arithmetic), make_material_struct(arithmetic)
     stress_of = LAWS[law](LawOptions(arithmetic, plane_stress))
+    record = arithmetic.record
+    _, unpack = make_packing(arithmetic)
     principal_frame = make_principal_frame(options)
+    complete = make_thin_completion(arithmetic)
     volume_change, _ = make_kinematics(arithmetic)
 
     @wp.func
@@ -80,12 +83,16 @@ def make_survey_kernel(options: StructureOptions, law: str, plane_stress: bool) 
         first_row: int,
         materials: wp.array(dtype=material),
         structure: wp.array(dtype=wp.int32),
+        thin_normal: wp.array(dtype=record),
         gradient: wp.array(dtype=matrix),
         velocity: wp.array(dtype=point),
         acceleration: wp.array(dtype=point),
         extremes: wp.array2d(dtype=wp.float64),
     ):
-        """One block of particles: its extremes, see the columns above."""
+        """One block of particles: its extremes, see the columns above.
+
+        A particle whose neighbours see not even a plane has no J, and no stress that could stiffen.
+        """
         block = offset + wp.tid()
         speed = wp.float64(0.0)
         stiffest = wp.float64(0.0)
@@ -98,13 +105,15 @@ def make_survey_kernel(options: StructureOptions, law: str, plane_stress: bool) 
                 v = velocity[i]
                 a = acceleration[i]
                 H = gradient[i]
+                if wp.static(options.thin):
+                    H = thin_normal[i][dim] * complete(H, unpack(thin_normal[i]))
                 J = wp.float64(1.0) + wp.float64(volume_change(H))
+                if wp.isfinite(J) and flattest < -J:
+                    flattest = -J
+                    worst = i
                 if wp.isfinite(wp.dot(v, v) + wp.dot(a, a) + J):
                     speed = wp.max(speed, wp.dot(v, v))
                     stiffest = wp.max(stiffest, wp.float64(stiffening(H, materials[structure[i]])))
-                    if flattest < -J:
-                        flattest = -J
-                        worst = i
                 else:
                     faults += wp.float64(1.0)
         row = first_row + block

@@ -69,6 +69,15 @@ def test_integral_and_mean_over_the_window() -> None:
     assert row_of(2.0 * TIMES, feature="mean", window=[1.0, 2.0], value=3.0).value == pytest.approx(3.0)
 
 
+def test_average_removes_what_is_shorter_than_it() -> None:
+    """A spike of one sample, 1000 high and 5 ms wide at its foot's middle, over a slow ramp: mean 1000 * 5 / 100."""
+    spike = TIMES + np.where(np.arange(TIMES.size) == 200, 1000.0, 0.0)
+    row = row_of(spike, feature="maximum", average=0.1, value=50.0)
+    # the ramp adds one second at the spike, up to half the average's length to either side
+    assert row.value == pytest.approx(50.0 + 1.0, abs=0.06)
+    assert row_of(TIMES, feature="maximum", average=0.1, value=2.0).value == pytest.approx(2.0, abs=0.03)
+
+
 def test_without_a_value_the_figure_is_reported() -> None:
     row = row_of(TIMES, feature="integral", convergence=0.1)
     assert (row.value, row.holds, row.note) == (pytest.approx(2.0), None, "in J/m s")

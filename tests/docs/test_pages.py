@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-import update_readme
+import validation_tables
 
 ROOT = Path(__file__).parents[2]
 PAGES = sorted([*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")])
@@ -22,6 +22,7 @@ ROW = {
     "error": 0.25,
     "bound": 0.01,
     "holds": False,
+    "steps": 300,
     "wall_seconds": 7.25,
     "device": "cpu",
     "threads": 2,
@@ -60,27 +61,48 @@ def test_every_shipped_scene_is_in_the_changelog() -> None:
 
 
 def test_the_table_shows_cost_and_error_and_marks_what_fails() -> None:
-    line = "| `still_tank` | 0.02 | 12345 | pressure | 5 | 4 | **25 %** | 1 % | 7.25 |"
-    assert line in update_readme.table([ROW])
+    line = "| `still_tank` | 0.02 | 12345 | pressure | 5 | 4 | **25 %** | 1 % | 300 | 7.25 |"
+    assert line in validation_tables.table([ROW])
 
 
 def test_the_table_shows_what_a_failed_run_has_not() -> None:
-    missing = dict.fromkeys(("value", "reference", "error", "particles", "wall_seconds", "device", "threads"))
-    assert "| - | pressure | - | - | **-** | 1 % | - |" in update_readme.table([ROW | missing])
+    missing = dict.fromkeys(
+        ("value", "reference", "error", "particles", "steps", "wall_seconds", "device", "threads")
+    )
+    assert "| - | pressure | - | - | **-** | 1 % | - | - |" in validation_tables.table([ROW | missing])
 
 
-def test_only_the_marked_block_of_the_readme_is_rewritten(
+def test_the_summary_has_a_line_a_scene_with_its_finest_resolution() -> None:
+    limit = ROW | {"quantity": "kinetic_energy", "error": 0.0, "error_unit": "J", "holds": True}
+    coarse = ROW | {"resolution": 0.04}
+    line = "| `still_tank` | 0.02 | 12345 | **pressure 25 % (1 %)**; within limits: kinetic energy | 7.25 |"
+    assert line in validation_tables.summary([coarse, ROW, limit])
+    assert "0.04" not in validation_tables.summary([coarse, ROW, limit])
+
+
+def test_new_rows_replace_those_of_their_scene_and_resolution() -> None:
+    other = ROW | {"scene": "dam"}
+    newer = ROW | {"quantity": "level"}
+    assert validation_tables.merged([ROW, other], [newer]) == [other, newer]
+
+
+def test_only_the_marked_block_of_a_page_is_rewritten(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    readme, results = tmp_path / "README.md", tmp_path / "results.jsonl"
-    readme.write_text(f"above\n{update_readme.BEGIN}\nold\n{update_readme.END}\nbelow\n")
+    begin, end = validation_tables.BEGIN, validation_tables.END
+    results = tmp_path / "results.jsonl"
     results.write_text(f"{json.dumps(ROW)}\n")
-    monkeypatch.setattr(update_readme, "README", readme)
-    update_readme.main(str(results))
-    table = update_readme.table([ROW])
-    assert readme.read_text() == f"above\n{update_readme.BEGIN}\n{table}\n{update_readme.END}\nbelow\n"
+    for name in ("RECORD", "PAGE", "README"):
+        file = tmp_path / name
+        file.write_text("" if name == "RECORD" else f"above\n{begin}\nold\n{end}\nbelow\n")
+        monkeypatch.setattr(validation_tables, name, file)
+    validation_tables.main(results)
+    texts = [(tmp_path / name).read_text() for name in ("PAGE", "README")]
+    tables = [validation_tables.table([ROW]), validation_tables.summary([ROW])]
+    assert texts == [f"above\n{begin}\n{table}\n{end}\nbelow\n" for table in tables]
+    assert json.loads((tmp_path / "RECORD").read_text()) == ROW
 
 
-def test_a_readme_without_marks_is_refused() -> None:
+def test_a_page_without_marks_is_refused() -> None:
     with pytest.raises(ValueError, match="validation:begin"):
-        update_readme.replace_block("no marks", "table")
+        validation_tables.replace_block("no marks", "table", "page.md")

@@ -33,7 +33,7 @@ def search(
     ids = wp.array(np.arange(len(points)), dtype=wp.int64, device="cpu")
     fluids = len(points) - walls
     ranges = [(0, fluids), (fluids, walls)] if walls else [(0, fluids)]
-    pairs = [(0, [0, 1]), (1, [0])] if walls else [(0, [0])]
+    pairs = [(0, [[0], [1]]), (1, [[0]])] if walls else [(0, [[0]])]
     removable = [True, False][: len(ranges)]
     found = NeighbourSearch(
         launcher, arithmetic, space, ranges, removable, pairs, RADIUS, SKIN, spacing, position

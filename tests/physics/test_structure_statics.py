@@ -131,3 +131,33 @@ def test_the_stability_limit_is_the_largest_frequency():
     exact = np.sqrt(np.linalg.eigvalsh(stiffness).max() / one.parts.mass[0])
     assert one.stepper.frequency == pytest.approx(exact, rel=0.03)
     assert one.stepper.frequency <= exact * (1.0 + 1e-9)
+
+
+def test_a_relaxation_that_is_interrupted_ends_with_the_same_bits():
+    """The damping of the slowest mode is part of the state, and so is how far loads have been put on."""
+    where = region((-1.0, 0.0), (1.0, 0.1))
+    tip = {"type": "force", "region": where, "value": (0.0, -300.0), "factor": "t"}
+    scene = hanging(structure={"loads": {"tip": tip}})
+    whole = Simulation(scene, device="cpu", threads=1)
+    whole.advance(1.0)
+    saved = whole.save_state()
+    whole.advance(2.0)
+    resumed = Simulation(scene, device="cpu", threads=1)
+    resumed.load_state(saved)
+    resumed.advance(2.0)
+    assert resumed.step_count == whole.step_count
+    for name, value in whole.save_state().items():
+        assert np.array_equal(value, resumed.save_state()[name]), name
+
+
+def test_a_clamp_that_jumps_by_two_spacings_is_put_on_gradually():
+    """Stiffening by more than ten within one batch of steps: the ramp and shorter steps carry St. Venant-Kirchhoff."""
+    right = {"region": region((1.2, 0.0), (1.4, 0.3)), "motion": [{"type": "linear", "velocity": (0.2, 0.0)}]}
+    clamps = {"left": {"region": region((0.0, 0.0), (0.2, 0.3))}, "right": right}
+    scene = block(
+        (1.4, 0.3), structure={"clamps": clamps}, numerics=STATIC, time={"end": 1.0, "frame_rate": 1.0}
+    )
+    simulation = equilibrium(scene)
+    X, u = reference_of(simulation.system), simulation.array("displacement").numpy()
+    assert u[X[:, 0] > 1.2, 0] == pytest.approx(0.2, abs=1e-14)
+    assert u[np.isclose(X[:, 0], 0.65) | np.isclose(X[:, 0], 0.75), 0].mean() == pytest.approx(0.1, rel=1e-3)

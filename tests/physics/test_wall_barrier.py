@@ -31,7 +31,7 @@ def kinetic_energy(sim: Simulation) -> float:
 
 @pytest.mark.verification
 @pytest.mark.parametrize("dimension", [2, 3])
-@pytest.mark.parametrize("wall", ["extrapolated", "dynamic"])
+@pytest.mark.parametrize("wall", ["extrapolated", "dynamic", "modified_dynamic", "repulsive"])
 def test_disordered_water_stays_in_and_comes_to_rest(monkeypatch, dimension, wall):
     sim = jittered_tank(monkeypatch, dimension, wall)
     sim.advance(0.3)

@@ -40,6 +40,8 @@ def feature_of(reference: FeatureReference, time: np.ndarray, column: np.ndarray
     """The figure from times [s] and values, each of shape (n,); not a number where there is none."""
     if time.size == 0 or not np.isfinite(column).all():
         return math.nan
+    if reference.average is not None:
+        column = moving_mean(time, column, reference.average)
     if reference.feature in THRESHOLD_FEATURES:
         return THRESHOLD_FEATURES[reference.feature](time, column, float(reference.threshold or 0.0))
     return FEATURES[reference.feature](time, column)
@@ -51,6 +53,14 @@ def feature_unit(reference: FeatureReference) -> str:
     units = {"integral": f"{unit} s", "decay_rate": "1/s"}
     times = dict.fromkeys(("arrival", "first_peak_time", "period", "maximum_time", "minimum_time"), "s")
     return (units | times).get(reference.feature, unit)
+
+
+def moving_mean(time: np.ndarray, column: np.ndarray, duration: float) -> np.ndarray:
+    """Mean of the column, taken as linear between its samples, over a duration [s] about each; shorter at the ends."""
+    integral = np.concatenate([[0.0], np.cumsum(0.5 * np.diff(time) * (column[1:] + column[:-1]))])
+    begin = np.maximum(time - 0.5 * duration, time[0])
+    end = np.minimum(time + 0.5 * duration, time[-1])
+    return (np.interp(end, time, integral) - np.interp(begin, time, integral)) / (end - begin)
 
 
 def arrival(time: np.ndarray, column: np.ndarray, threshold: float) -> float:

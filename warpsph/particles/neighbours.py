@@ -67,13 +67,13 @@ class CellTable:
 
 
 class NeighbourRows:
-    """Neighbour rows of a range of target particles, one segment for each source table."""
+    """Neighbour rows of a range of target particles, one segment for each group of source tables."""
 
     def __init__(
-        self, launcher: Launcher, targets: CellTable, sources: Sequence[CellTable], capacity: int
+        self, launcher: Launcher, targets: CellTable, sources: Sequence[Sequence[CellTable]], capacity: int
     ) -> None:
         self.targets = targets
-        self.sources = tuple(sources)
+        self.sources = tuple(tuple(tables) for tables in sources)
         self._launcher = launcher
         rows = max(targets.count, 1)
         self.ends = wp.zeros((rows, max(len(self.sources), 1)), dtype=wp.int32, device=launcher.device)
@@ -100,7 +100,7 @@ class NeighbourSearch:
     Args:
         ranges: (first, count) of each particle range that is searched in.
         removable: whether a range's particles leave the run outside of the kill box.
-        pairs: (target range, source ranges) of each list, by position in `ranges`.
+        pairs: (target range, source ranges) of each list, by position in `ranges`: one group of ranges a segment.
         radius, skin: metres. Lists stay complete while no particle has moved more than half the skin.
         position: master positions of all particles, (n,) double vectors [m].
     """
@@ -112,7 +112,7 @@ class NeighbourSearch:
         space: SearchSpace,
         ranges: Sequence[tuple[int, int]],
         removable: Sequence[bool],
-        pairs: Sequence[tuple[int, Sequence[int]]],
+        pairs: Sequence[tuple[int, Sequence[Sequence[int]]]],
         radius: float,
         skin: float,
         spacing: float,
@@ -123,7 +123,7 @@ class NeighbourSearch:
         self.skin = skin
         self.builds = 0
         self._launcher = launcher
-        self._reach = radius + skin
+        self.reach = radius + skin
         self._kernels = make_cell_kernels(arithmetic, space.periodic)
         particles = sum(count for _, count in ranges)
         self.cells = self._choose_cells(particles)
@@ -134,9 +134,12 @@ class NeighbourSearch:
         self._first_capacity = self._estimate_neighbours(spacing)
         self.rows = [
             NeighbourRows(
-                launcher, self.tables[target], [self.tables[s] for s in sources], self._first_capacity
+                launcher,
+                self.tables[target],
+                [[self.tables[s] for s in group] for group in groups],
+                self._first_capacity,
             )
-            for target, sources in pairs
+            for target, groups in pairs
         ]
         self._listed = [
             Reordered(launcher, self.listed_position, table, table.first) for table in self.tables
@@ -173,7 +176,9 @@ class NeighbourSearch:
 
     def list_once(self, target: int, source: int) -> NeighbourRows:
         """Return rows of one table's particles with another's (or its own), for a single use."""
-        rows = NeighbourRows(self._launcher, self.tables[target], [self.tables[source]], self._first_capacity)
+        rows = NeighbourRows(
+            self._launcher, self.tables[target], [[self.tables[source]]], self._first_capacity
+        )
         self._fill_completely(rows)
         return rows
 
@@ -190,7 +195,7 @@ class NeighbourSearch:
 
     def _choose_cells(self, particles: int) -> np.ndarray:
         extent = self.space.high - self.space.low
-        cells = np.maximum(np.floor(extent / self._reach).astype(int), 3)
+        cells = np.maximum(np.floor(extent / self.reach).astype(int), 3)
         periodic = np.asarray(self.space.periodic)
         budget = max(CELLS_PER_PARTICLE * particles, 4096)
         while np.prod(cells[~periodic], dtype=float) * np.prod(cells[periodic], dtype=float) > budget:
@@ -203,7 +208,7 @@ class NeighbourSearch:
 
     def _describe_grid(self) -> Any:
         arithmetic, space = self.arithmetic, self.space
-        width = np.where(space.periodic, (space.high - space.low) / self.cells, self._reach)
+        width = np.where(space.periodic, (space.high - space.low) / self.cells, self.reach)
         grid = make_grid_struct(arithmetic)()
         grid.low = arithmetic.vector(*(space.low - space.origin))
         grid.inverse_width = arithmetic.vector(*(1.0 / width))
@@ -212,7 +217,7 @@ class NeighbourSearch:
         return grid
 
     def _estimate_neighbours(self, spacing: float) -> int:
-        reach = self._reach / spacing
+        reach = self.reach / spacing
         ball = math.pi * reach**2 if self.arithmetic.dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
         return math.ceil(FIRST_CAPACITY_MARGIN * ball)
 
@@ -260,17 +265,20 @@ class NeighbourSearch:
             self._fill(rows)
 
     def _fill(self, rows: NeighbourRows) -> None:
-        for segment, source in enumerate(rows.sources):
+        groups = enumerate(rows.sources)
+        places = [(segment, k > 0, table) for segment, group in groups for k, table in enumerate(group)]
+        for segment, continues, source in places:
             self._launcher.bind(
                 "list neighbours",
                 self._kernels.list_neighbours,
                 rows.targets.first,
                 self.listed_position,
-                self.arithmetic.real(self._reach),
+                self.arithmetic.real(self.reach),
                 self.grid,
                 source.first,
                 source.start,
                 segment,
+                int(continues),
                 rows.index,
                 rows.ends,
             ).run(rows.targets.count)

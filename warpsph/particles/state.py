@@ -33,10 +33,19 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Layout:
-    """Particle counts of each kind at the start; fluid has the indices 0 .. fluids - 1, walls those behind."""
+    """Places for particles of each kind; fluid has the indices 0 .. fluids - 1, walls those behind.
+
+    The last `images` places of the fluid are for its mirror images at planes of symmetry.
+    """
 
     fluids: int
     walls: int
+    images: int = 0
+
+    @property
+    def first_image(self) -> int:
+        """Index of the first image, which is the number of fluid particles at the start."""
+        return self.fluids - self.images
 
     @property
     def total(self) -> int:

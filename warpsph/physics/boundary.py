@@ -16,6 +16,7 @@ from warpsph.particles.launch import Pass
 from warpsph.particles.neighbours import NeighbourRows
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
+from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.sampling.kinematics import Pose, RigidMotion
 from warpsph.scene.placement import cross_matrix
 
@@ -28,6 +29,7 @@ class WallModel:
         sets: number of all sets, since a particle names its set by index.
         surface: arrays that this model fills for the fluid.
         fluid_reaction: adds to the force on each wall particle [N] what acts beside pair forces.
+        mirror: mirror points of modified dynamic walls.
     """
 
     def __init__(
@@ -38,7 +40,9 @@ class WallModel:
         sets: int,
         surface: WallSurface,
         fluid_reaction: Callable[[wp.array], None],
+        mirror: MirroredWalls | None = None,
     ) -> None:
+        self._mirror = mirror
         self.count = assembly.layout.walls
         self.surface = surface
         self._fluid_reaction = fluid_reaction
@@ -62,7 +66,8 @@ class WallModel:
     @property
     def own_arrays(self) -> dict[str, wp.array]:
         """Arrays of shape (walls,) that follow the order of the walls and belong into a checkpoint."""
-        return {
+        mirror = {"wall_mirror": self._mirror.ways} if self._mirror else {}
+        return mirror | {
             "wall_reference": self.reference,
             "wall_normal": self.reference_normal,
             "wall_friction": self.surface.friction,
@@ -173,6 +178,8 @@ class WallModel:
         )
         if self.method == "dynamic":
             self._bind_dynamic(rows)
+        elif self._mirror:
+            self._impose = self._mirror.bind(self.surface, self._poses)
         else:
             self._impose = self._extrapolation(rows)
 

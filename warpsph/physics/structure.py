@@ -296,7 +296,7 @@ class StructureModel:
         for one in self.ranges:
             kernel = make_survey_kernel(self.options, one.law, one.plane_stress)
             moving = (t.gradient, s.velocity, s.acceleration, t.extremes)
-            place = (one.first, one.count, first_row, r.materials, r.structure)
+            place = (one.first, one.count, first_row, r.materials, r.structure, r.thin_normal)
             passes.append(self.launcher.bind("structure survey", kernel, *place, *moving))
             first_row += one.blocks
         return passes

@@ -36,7 +36,27 @@ class ExtrapolatedWall(SceneModel):
     zero; false for free surfaces, where water that hangs from a wall should fall. Default: false."""
 
 
-WallMethod = Annotated[DynamicWall | ExtrapolatedWall, Field(discriminator="type")]
+class ModifiedDynamicWall(SceneModel):
+    """Wall particles take pressure and velocity from their mirror points in the fluid, to first order, after English
+    et al. (2022)."""
+
+    type: Literal["modified_dynamic"] = "modified_dynamic"
+    suction: Flag = False
+    """Whether the pressure of a wall may be negative, as for extrapolated walls. Default: false."""
+
+
+class RepulsiveWall(SceneModel):
+    """Wall particles take the mean pressure and velocity of the fluid, and the first layer repels it, after Liu, Shao &
+    Chang (2012)."""
+
+    type: Literal["repulsive"] = "repulsive"
+    suction: Flag = False
+    """Whether the pressure of a wall may be negative, as for extrapolated walls. Default: false."""
+
+
+WallMethod = Annotated[
+    DynamicWall | ExtrapolatedWall | ModifiedDynamicWall | RepulsiveWall, Field(discriminator="type")
+]
 
 
 class Numerics(SceneModel):

@@ -219,6 +219,9 @@ class FeatureReference(_Reference):
     window: tuple[NonNegativeReal, NonNegativeReal] | None = None
     """First and last time [s]; null: the whole run. Default: null."""
 
+    average: PositiveReal | None = None
+    """The column is averaged over this time about each sample first [s]; null: it is taken as it is. Default: null."""
+
     threshold: Real | None = None
     """Value of the column that counts as arrival; for arrival and first peaks. Default: null."""
 

@@ -59,6 +59,11 @@ class Domain(SceneModel):
     periodic: Mapping[Axis, tuple[Real, Real]] = {}
     """Axes that wrap round, each with its [low, high] coordinates [m]. Default: none."""
 
+    symmetry: Mapping[Face, Real] = {}
+    """Planes of symmetry: the face of the domain, x_min, x_max, y_min, y_max, z_min or z_max, with its coordinate [m].
+    The flow beyond is the mirror image. Fluid lies inside; walls go on beyond the plane by the support radius.
+    Default: none."""
+
     kill_box: Bounds | None = None
     """Particles that leave this box are removed and counted. Default: null."""
 

@@ -22,9 +22,13 @@ from warpsph.physics.fluid import (
     material,
     select_code,
 )
+from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.physics.sound_speed import choose_sound_speed
+from warpsph.physics.symmetry import SymmetryModel, images_of
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
+from warpsph.sampling.mirror import mirror_ways
+from warpsph.sampling.walls import period_of
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
 
@@ -40,6 +44,7 @@ class Parts:
     search: NeighbourSearch
     fluid: FluidModel
     walls: WallModel | None
+    symmetry: SymmetryModel | None
     fluid_arrays: tuple[Reordered, ...]
     wall_arrays: tuple[Reordered, ...]
 
@@ -67,10 +72,7 @@ def search_space(scene: Scene, sets: Sequence[SampledSet]) -> SearchSpace:
 def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Parts:
     """Allocate everything that the scene needs and bind its passes."""
     arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
-    layout = Layout(
-        fluids=sum(len(s.position) for s in sets if s.kind == "fluid"),
-        walls=sum(len(s.position) for s in sets if s.kind == "boundary"),
-    )
+    layout = _layout(scene, sets)
     space = search_space(scene, sets)
     motions = rigid_motions(scene)
     sound_speed = choose_sound_speed(scene, sets, largest_speed(scene, sets))
@@ -98,8 +100,29 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
     fluid = FluidModel(assembly, lists, surface, scene)
     walls = None
     if layout.walls:
-        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, fluid.react)
-    return Parts(assembly, search, fluid, walls, *_reordered(assembly, search, fluid, walls))
+        mirror = _mirrored_walls(scene, boundaries, assembly, search)
+        moved = _by_index(motions, sets)
+        walls = WallModel(assembly, lists, moved, len(sets), surface, fluid.react, mirror)
+    symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
+    return Parts(assembly, search, fluid, walls, symmetry, *_reordered(assembly, search, fluid, walls))
+
+
+def _layout(scene: Scene, sets: Sequence[SampledSet]) -> Layout:
+    fluids = sum(len(s.position) for s in sets if s.kind == "fluid")
+    walls = sum(len(s.position) for s in sets if s.kind == "boundary")
+    images = images_of(scene, fluids)
+    return Layout(fluids=fluids + images, walls=walls, images=images)
+
+
+def _mirrored_walls(
+    scene: Scene, boundaries: Sequence[SampledSet], assembly: Assembly, search: NeighbourSearch
+) -> MirroredWalls | None:
+    """The mirror points of the walls, where their method wants them."""
+    if assembly.options.wall != "modified_dynamic":
+        return None
+    period = period_of(scene)
+    ways = [mirror_ways(scene.boundaries[s.name], s.position, scene.spacing, period) for s in boundaries]
+    return MirroredWalls(assembly, search, np.concatenate(ways))
 
 
 def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
@@ -108,18 +131,22 @@ def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
 
 def _make_search(scene: Scene, assembly: Assembly) -> NeighbourSearch:
     layout, radius = assembly.layout, scene.support_radius
-    ranges, removable = [(0, layout.fluids)], [True]
-    pairs: list[tuple[int, list[int]]] = [(FLUID, [FLUID])]
+    ranges = [(0, layout.first_image)]
+    walls: list[list[int]] = []
     if layout.walls:
         ranges.append((layout.fluids, layout.walls))
-        removable.append(False)
-        pairs = [(FLUID, [FLUID, WALL]), (WALL, [FLUID])]
+        walls = [[WALL]]
+    fluid = [FLUID]
+    if layout.images:
+        fluid = [FLUID, len(ranges)]
+        ranges.append((layout.first_image, layout.images))
+    pairs = [(FLUID, [fluid, *walls]), *((WALL, [fluid]) for _ in walls)]
     return NeighbourSearch(
         assembly.launcher,
         assembly.options.arithmetic,
         assembly.space,
         ranges,
-        removable,
+        [first == 0 for first, _ in ranges],
         pairs,
         radius=radius,
         skin=scene.numerics.skin * radius,
@@ -136,11 +163,19 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
     pressure = np.concatenate([s.pressure for s in sets])
     deviation = assembly.density_deviation(pressure)
     volume = float(c.mass) / (fluid.density + deviation)
-    write_array(state.position, position)
-    write_array(state.velocity_volume, np.column_stack([velocity, volume]))
-    write_array(state.density_deviation, deviation)
-    write_array(state.id, np.arange(len(position)))
-    write_array(state.set_index, np.repeat(np.arange(len(sets)), [len(s.position) for s in sets]))
+    fields = {
+        "position": position,
+        "velocity_volume": np.column_stack([velocity, volume]),
+        "density_deviation": deviation,
+        "id": np.arange(len(position)),
+        "set_index": np.repeat(np.arange(len(sets)), [len(s.position) for s in sets]),
+    }
+    layout = assembly.layout
+    for name, values in fields.items():
+        array = getattr(state, name)
+        write_array(array, values[: layout.first_image])
+        if layout.walls:
+            write_array(array[layout.fluids :], values[layout.first_image :])
 
 
 def _reordered(

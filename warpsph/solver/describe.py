@@ -44,12 +44,16 @@ def _fields(parts: Parts) -> list[dict[str, Any]]:
 
 
 def _passes(parts: Parts) -> list[str]:
-    fluid, walls = parts.fluid.passes, parts.walls
-    passes = ["choose step", "begin step", *fluid, "survey"]
+    mirror = ["mirror"] if parts.symmetry else []
+    passes = ["choose step", "begin step", *mirror, *parts.fluid.passes, "survey"]
+    if mirror:
+        passes.insert(passes.index("kick and drift") + 1, "mirror")
+    walls = parts.walls
     if walls is None:
         return passes
-    imposed = "wall pressure" if walls.method == "dynamic" else "extrapolate to walls"
-    passes.insert(2, imposed)
+    names = {"dynamic": "wall pressure", "modified_dynamic": "mirror points of walls"}
+    imposed = names.get(walls.method, "extrapolate to walls")
+    passes.insert(passes.index("accelerate"), imposed)
     if walls.method == "dynamic":
         passes.insert(-1, "update wall density")
     if walls.moving:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Mapping
+from typing import Any
 
 import numpy as np
 
@@ -13,6 +15,10 @@ from warpsph.scene.structures import StaticSolution
 from warpsph.solver.structure_assembly import StructureParts
 from warpsph.solver.structure_step import StructureStepper
 from warpsph.solver.system import StepReport
+
+RAMP_STEPS = 8 * SUB_STEPS
+"""Steps over which loads and clamps go from their last values to the next: a jump of a clamp by several spacings would
+stiffen the particles beside it more than the step allows."""
 
 
 class NotConverged(RuntimeError):
@@ -47,21 +53,46 @@ class RelaxationStepper(StructureStepper):
         self.keep_state()
         before = self._before
         at = self.target if math.isfinite(self.target) else self.time
+        ramp = min((self._made + SUB_STEPS) / RAMP_STEPS, 1.0) if self._model.has_time_laws else 1.0
         dt = self.stable_step
-        self._set_clock(dt, 2.0 * min(self._slowest, self.frequency))
-        self._laws.write(at, 0.0)
-        for _ in range(SUB_STEPS):
-            self._model.drift()
-            self._model.strain()
-            self._model.accelerate()
-        self.survey()
+        self._laws.write(self.time + ramp * (at - self.time), 0.0)
+        self._relax(SUB_STEPS, dt)
+        if self.failed or dt * self._cfl > self.stable_step:
+            self.return_to_kept()
+            self.find_forces_again()
+            self._relax_with_care()
         self._made += SUB_STEPS
+        if self._model.has_time_laws and self._made <= RAMP_STEPS + SUB_STEPS:
+            self._slowest = math.inf  # what has changed so far came from the loads in part
         self._estimate_frequency(before["displacement"], before["acceleration"])
-        if self._converged():
+        if ramp == 1.0 and self._converged():
             self.time, self._made, self._slowest = at, 0, math.inf
         elif self._made >= self._solution.max_steps:
             raise NotConverged(self._complaint(at))
         return StepReport(dt, "relaxation", SUB_STEPS)
+
+    def _relax(self, steps: int, dt: float) -> None:
+        """Make damped steps of a size [s] at standing loads, then look at the state."""
+        self._set_clock(dt, 2.0 * min(self._slowest, self.frequency))
+        for _ in range(steps):
+            self._model.drift()
+            self._model.strain()
+            self._model.accelerate()
+        self.survey()
+
+    def _relax_with_care(self) -> None:
+        """As many steps with a look after each, as far as the state does not fail."""
+        for _ in range(SUB_STEPS):
+            self._relax(1, self.stable_step)
+            if self.failed:
+                return
+
+    def save(self) -> dict[str, Any]:
+        return super().save() | {"slowest": self._slowest, "made": self._made}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        super().load(saved)
+        self._slowest, self._made = float(saved["slowest"]), int(saved["made"])
 
     def _estimate_frequency(self, displacement: np.ndarray, acceleration: np.ndarray) -> None:
         """omega^2 = -sum m da . du / sum m du . du of what has changed."""

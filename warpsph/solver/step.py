@@ -29,6 +29,7 @@ class Stepper:
 
     def __init__(self, scene: Scene, parts: Parts) -> None:
         self._fluid, self._walls, self._search = parts.fluid, parts.walls, parts.search
+        self._symmetry = parts.symmetry
         self._parts = parts
         self._clock = parts.assembly.clock
         self._spacing = scene.spacing
@@ -40,9 +41,10 @@ class Stepper:
         self.set_clock(TIME=time, STEP=0.0, TARGET=math.inf)
         if self._walls:
             self._walls.place(time)
-        self._search.take_positions([True] * len(self._search.tables))
+        self._search.take_positions(self._moving_tables(all_tables=True))
         self.make_lists(all_tables=True)
         self._fluid.synchronise()
+        self.mirror_pressure()
         if self._walls:
             self.find_wall_surface(self._walls)
             self._walls.place(time)
@@ -76,9 +78,11 @@ class Stepper:
             self.renew_lists()
         self.move_walls(self.time - 0.5 * report.dt)
         self._fluid.begin_step()
+        self.mirror_pressure()
         self.impose_walls()
         self._fluid.accelerate()
         self._fluid.kick_and_drift()
+        self.mirror_density()
         self.move_walls(self.time)
         self._fluid.update_density()
         self.update_wall_density()
@@ -97,6 +101,16 @@ class Stepper:
         self._survey_fluid.run(self._fluid_blocks)
         if self._walls and self._walls.moving:
             self._survey_walls.run(self._wall_blocks)
+
+    def mirror_pressure(self) -> None:
+        """Show the fluid its images with their pressures."""
+        if self._symmetry:
+            self._symmetry.mirror_pressure()
+
+    def mirror_density(self) -> None:
+        """Show the fluid its images with their densities."""
+        if self._symmetry:
+            self._symmetry.mirror_density()
 
     def move_walls(self, time: float) -> None:
         """Place walls that move as prescribed for a time [s]."""
@@ -121,19 +135,23 @@ class Stepper:
 
     def renew_lists(self) -> None:
         """Sort the particles and list their neighbours anew."""
+        if self._symmetry:
+            self._symmetry.reflect()
         self._search.take_positions(self._moving_tables())
         self.make_lists()
 
     def make_lists(self, all_tables: bool = False) -> None:
         """Sort and list from the positions last taken."""
-        moving = [True] * len(self._search.tables) if all_tables else self._moving_tables()
+        moving = self._moving_tables(all_tables)
         capacities = [rows.capacity for rows in self._search.rows]
         before = self._fluid.count
         self.removed += self._search.sort(FLUID, self._parts.fluid_arrays)
         if self._fluid.count < before:
             self.forget_removed()
-        if len(moving) > WALL and moving[WALL]:
+        if self._walls and moving[WALL]:
             self._search.sort(WALL, self._parts.wall_arrays)
+        if self._symmetry:
+            self._symmetry.make_images()
         self._search.list_neighbours()
         if capacities != [rows.capacity for rows in self._search.rows]:
             self._fluid.bind_lists()
@@ -147,6 +165,8 @@ class Stepper:
     def synchronise(self) -> None:
         """Bring pressures to the time of the positions, for output."""
         self._fluid.synchronise()
+        self.mirror_pressure()
+        self.mirror_density()
         if self._walls:
             self._walls.synchronise()
 
@@ -181,8 +201,10 @@ class Stepper:
     def _read(self, entry: int) -> float:
         return float(self._host_clock[entry])
 
-    def _moving_tables(self) -> list[bool]:
-        return [True, self._walls.moving] if self._walls else [True]
+    def _moving_tables(self, all_tables: bool = False) -> list[bool]:
+        """Which tables have positions of their own that may have changed; images have none."""
+        walls = [all_tables or self._walls.moving] if self._walls else []
+        return [True, *walls, *([False] if self._symmetry else [])]
 
     def _bind_clock(self, scene: Scene) -> None:
         a = self._parts.assembly
@@ -210,7 +232,7 @@ class Stepper:
             )
 
         self._bind_survey = bind_survey
-        self._survey_fluid = bind_survey(0, a.layout.fluids, 0)
+        self._survey_fluid = bind_survey(0, a.layout.first_image, 0)
         self._survey_walls = bind_survey(a.layout.fluids, a.layout.walls, self._fluid_blocks)
         limits = step_limits(scene, float(a.constants.sound_speed))
         self._choose = a.launcher.bind(

@@ -11,7 +11,7 @@ import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.bonds import make_bond_weights
-from warpsph_kernels.materials import LAWS, make_material_struct, make_matrix
+from warpsph_kernels.materials import make_material_struct, make_matrix
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.structure import StructureOptions
 
@@ -84,7 +84,6 @@ class StructureParts:
 
 def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> StructureParts:
     """Allocate everything that the structures of the scene need and bind their passes. Raises SceneError."""
-    _refuse_unknown_laws(scene)
     arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
     bodies = _bodies(scene, sets)
     volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
@@ -127,16 +126,6 @@ def bond_radius(scene: Scene) -> float:
     """Reach of the bonds of structures [m]."""
     numerics = scene.numerics
     return numerics.support_over_h * numerics.structure.h_over_dp * scene.spacing
-
-
-def _refuse_unknown_laws(scene: Scene) -> None:
-    problems = [
-        Problem.at(f"structures.{name}.material.law", f"there is no law {law!r}", ", ".join(LAWS), law)
-        for name, structure in scene.structures.items()
-        if (law := structure.material.law) not in LAWS
-    ]
-    if problems:
-        raise SceneError(problems)
 
 
 def _bodies(scene: Scene, sets: Sequence[SampledSet]) -> tuple[Body, ...]:

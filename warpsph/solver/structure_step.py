@@ -23,6 +23,8 @@ from warpsph.solver.system import StepReport
 from warpsph.solver.time_laws import TimeLaws
 
 STIFFNESS_GRADE = 1.1
+SHORTEST = 1000.0
+"""By how much a step may be shortened where the state has changed faster than was foreseen."""
 
 
 class StructureStepper:
@@ -36,6 +38,7 @@ class StructureStepper:
         self._extremes = np.zeros(5)
         self.time = 0.0
         self.target = math.inf
+        self.stuck = False
         self._before: dict[str, np.ndarray] = {}
 
     def start(self) -> None:
@@ -52,16 +55,44 @@ class StructureStepper:
         self._model.accelerate()
         self.survey()
 
+    def find_forces_again(self) -> None:
+        """Bring stresses and extremes to the time of a state that has been restored with its accelerations."""
+        self._set_clock(0.0)
+        self._model.strain()
+        self.survey()
+
     def step(self) -> StepReport:
-        """Make a few steps of one size."""
+        """Make a few steps of one size; if they were too long after all, shorter ones to the same time."""
         self.keep_state()
         dt, count, limit = self.choose_step()
+        end = self.target if limit == "frame" else self.time + count * dt
         self.begin(dt)
         for _ in range(count):
             self.sub_step()
         self.survey()
-        self.time = self.target if limit == "frame" else self.time + count * dt
+        if self.failed or dt * self._cfl > self.stable_step:
+            self.return_to_kept()
+            count = self.step_with_care(end, dt / SHORTEST)
+        else:
+            self.time = end
         return StepReport(dt, limit, count)
+
+    def step_with_care(self, end: float, shortest: float) -> int:
+        """Go on to a time [s] with a look at the state after every step; return the number of steps.
+
+        Stops before that time when the state has failed, or does not allow even the shortest step [s].
+        """
+        self.find_forces_again()
+        count = 0
+        while self.time < end and not self.failed:
+            dt = min(self.stable_step, end - self.time)
+            self.stuck = dt < shortest and dt < end - self.time
+            self.begin(dt)
+            self.sub_step()
+            self.survey()
+            self.time = end if dt == end - self.time else self.time + dt
+            count += 1
+        return count
 
     def sub_step(self) -> None:
         """Advance by one step of the size that was begun with."""
@@ -119,8 +150,8 @@ class StructureStepper:
 
     @property
     def failed(self) -> bool:
-        """Whether some particle is inverted or not finite."""
-        return bool(self.faults or self._extremes[FLATTENING] >= 0.0)
+        """Whether some particle is inverted or not finite, or would need steps too short to go on."""
+        return bool(self.stuck or self.faults or self._extremes[FLATTENING] >= 0.0)
 
     @property
     def faults(self) -> int:
@@ -154,6 +185,4 @@ class StructureStepper:
         """Go on from what `save` returned; the state's arrays have been restored."""
         self.time, self.frequency = float(saved["time"]), float(saved["frequency"])
         self._laws.write(self.time, 0.0)
-        self._set_clock(0.0)
-        self._model.strain()
-        self.survey()
+        self.find_forces_again()

@@ -86,7 +86,7 @@ class StructureSystem:
         except NotConverged as error:
             raise self._diverged(step_count, 0, str(error), math.nan) from error
         if self.stepper.failed:
-            self._find_inversion(report, step_count)
+            raise self._fault(step_count + report.count)
         return report
 
     def set_target(self, time: float) -> None:
@@ -103,12 +103,7 @@ class StructureSystem:
         return sum_up(self.time, bodies, np.asarray(self._scene.gravity), self._fields.energies())
 
     def warnings(self, largest: Mapping[str, float]) -> list[str]:
-        warnings = []
-        thin = int(self.parts.bonds.thin.sum())
-        if thin:
-            warnings.append(
-                f"{thin} particles have all their neighbours in one plane or line: no strain is measured across it"
-            )
+        warnings = self._thin_warnings()
         energies = self._fields.energies()
         elastic = energies["strain"] + energies["hourglass"]
         if elastic > 0.0 and energies["hourglass"] > NOTABLE_HOURGLASS * elastic:
@@ -116,6 +111,19 @@ class StructureSystem:
             warnings.append(
                 f"the hourglass penalty carries {share:.0%} of the elastic energy: the shape is not resolved; "
                 "use a smaller spacing"
+            )
+        return warnings
+
+    def _thin_warnings(self) -> list[str]:
+        bonds, what = self.parts.bonds, "plane" if self._scene.dimension == 3 else "line"
+        warnings = []
+        if flat := int((bonds.thin & (bonds.seen > 0.0)).sum()):
+            warnings.append(
+                f"{flat} particles have all their neighbours in one {what}: no strain is measured across it"
+            )
+        if lost := int((bonds.seen == 0.0).sum()):
+            warnings.append(
+                f"{lost} particles have too few neighbours to span a {what}: they carry no stress"
             )
         return warnings
 
@@ -154,29 +162,17 @@ class StructureSystem:
             write_array(array, saved[name])
         self.stepper.load(saved)
 
-    def _find_inversion(self, report: StepReport, step_count: int) -> None:
-        """Repeat the last steps one by one up to the first that leaves an inverted particle; raise with its place."""
+    def _fault(self, step: int) -> SimulationDiverged:
+        """What has stopped the stepper, which has looked after every step."""
         stepper = self.stepper
-        stepper.return_to_kept()
-        start = stepper.time - report.count * report.dt
-        stepper.time = start
-        self.parts.model.strain()
-        stepper.survey()
-        stepper.begin(report.dt)
-        count = 0
-        while count < report.count and not stepper.failed:
-            stepper.sub_step()
-            stepper.survey()
-            count += 1
-        stepper.time = start + count * report.dt
         ratio = -stepper.extremes["flattening"]
-        worst, limit = (
-            stepper.flattest,
-            "it is inverted: the determinant J of its deformation gradient is not positive",
-        )
-        if ratio > 0.0:
-            worst, limit, ratio = self._not_finite(), "its state is not finite", math.nan
-        raise self._diverged(step_count + count, worst, limit, ratio)
+        if ratio <= 0.0:
+            limit = "it is inverted: the determinant J of its deformation gradient is not positive"
+            return self._diverged(step, stepper.flattest, limit, ratio)
+        if stepper.faults:
+            return self._diverged(step, self._not_finite(), "its state is not finite", math.nan)
+        limit = "it is compressed so much that its stiffness allows no step; J of its deformation gradient is small"
+        return self._diverged(step, stepper.flattest, limit, ratio)
 
     def _not_finite(self) -> int:
         state = self.parts.model.state

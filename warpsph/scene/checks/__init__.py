@@ -9,7 +9,7 @@ from warpsph.scene.checks.common import DeclaredNames
 from warpsph.scene.checks.geometry import geometry_problems
 from warpsph.scene.checks.references import probe_problems, reference_problems
 from warpsph.scene.checks.sets import boundary_problems, fluid_problems
-from warpsph.scene.checks.settings import domain_problems, settings_problems
+from warpsph.scene.checks.settings import domain_problems, settings_problems, symmetry_problems
 from warpsph.scene.checks.structures import structure_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import Components, SceneModel
@@ -37,6 +37,7 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
     of_places = [
         *_value_problems(scene, scene.dimension, ""),
         *domain_problems(scene),
+        *symmetry_problems(scene),
         *fluid_problems(scene),
         *boundary_problems(scene, names),
         *structure_problems(scene, names),

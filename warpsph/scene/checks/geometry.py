@@ -34,6 +34,7 @@ def geometry_problems(scene: Scene) -> Iterator[Problem]:
         return
     yield from _kill_box_problems(scene, boxes)
     yield from _period_problems(scene, boxes)
+    yield from _symmetry_problems(scene, boxes)
     walls = {f"boundaries.{name}.shape": bounding_box(wall.shape) for name, wall in scene.boundaries.items()}
     for key, spacing in _spacings(scene):
         yield from _thin_problems(key, spacing, boxes | walls)
@@ -91,6 +92,19 @@ def _period_problems(scene: Scene, bodies: dict[str, Box]) -> Iterator[Problem]:
             if low[index] < start - margin or high[index] > end + margin:
                 message = f"it reaches from {low[index]:g} to {high[index]:g} m in {axis}, out of the period"
                 yield Problem.at(key, message, f"{start:g} to {end:g} m, as in domain.periodic.{axis}")
+
+
+def _symmetry_problems(scene: Scene, fluids: dict[str, Box]) -> Iterator[Problem]:
+    for face, plane in scene.domain.symmetry.items():
+        index = AXES.index(face[0])
+        for key, (low, high) in fluids.items():
+            margin = _ROUNDING * abs(high[index] - low[index])
+            beyond = low[index] < plane - margin if face.endswith("min") else high[index] > plane + margin
+            if beyond:
+                message = (
+                    f"in {face[0]} it reaches from {low[index]:g} to {high[index]:g} m, beyond the plane"
+                )
+                yield Problem.at(key, message, f"inside of {plane:g} m, as in domain.symmetry.{face}")
 
 
 def _corners(low: np.ndarray, high: np.ndarray) -> str:

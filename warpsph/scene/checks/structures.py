@@ -5,12 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
+from warpsph.laws.materials import MATERIAL_LAWS
 from warpsph.scene.checks.common import (
     DeclaredNames,
     expression_problems,
     no_such_axis,
     prefixed,
     repeated_problems,
+    unknown_name,
     vector_field_problems,
 )
 from warpsph.scene.errors import Problem
@@ -32,6 +34,8 @@ def structure_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
         yield from prefixed(f"{key}.shape", structure.shape.dimension_problems(scene.dimension))
         yield from vector_field_problems(f"{key}.velocity", structure.velocity, scene.dimension)
         yield from vector_field_problems(f"{key}.displacement", structure.displacement, scene.dimension)
+        if structure.material.law not in MATERIAL_LAWS:
+            yield unknown_name(f"{key}.material.law", "law", structure.material.law, MATERIAL_LAWS)
         yield from _plane_problems(structure, scene.dimension, key)
         for name_of_clamp, clamp in structure.clamps.items():
             yield from _clamp_problems(clamp, scene.dimension, f"{key}.clamps.{name_of_clamp}")
@@ -54,8 +58,9 @@ def _plane_problems(structure: Structure, dimension: int, key: str) -> Iterator[
         return
     if dimension == 3:
         yield Problem.at(f"{key}.plane", "there is no plane in three dimensions", "strain", structure.plane)
-    if structure.material.law == "split_neo_hookean":
-        message = "split_neo_hookean is not there for plane stress"
+    law = MATERIAL_LAWS.get(structure.material.law)
+    if law is not None and not law.plane_stress:
+        message = f"{structure.material.law} is not there for plane stress"
         yield Problem.at(f"{key}.plane", message, "strain, or another material.law", structure.plane)
 
 

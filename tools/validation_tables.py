@@ -1,0 +1,168 @@
+"""Keep the record of validation runs, and write its tables in docs/validation.md and README.md.
+
+warpsph validate --json > out/validation.jsonl
+python tools/validation_tables.py out/validation.jsonl
+
+New lines replace those of the same scene and resolution in docs/validation.jsonl; without a file only the tables are
+written anew.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from collections.abc import Iterable, Mapping
+from itertools import groupby
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[1]
+RECORD, PAGE, README = ROOT / "docs/validation.jsonl", ROOT / "docs/validation.md", ROOT / "README.md"
+BEGIN, END = "<!-- validation:begin -->", "<!-- validation:end -->"
+COLUMNS = (
+    "scene",
+    "spacing [m]",
+    "particles",
+    "quantity",
+    "value",
+    "reference",
+    "error",
+    "bound",
+    "steps",
+    "wall [s]",
+)
+SUMMARY = ("scene", "spacing [m]", "particles", "errors (bounds)", "wall [s]")
+
+Row = Mapping[str, Any]
+
+
+def merged(old: Iterable[Row], new: Iterable[Row]) -> list[Row]:
+    """The old rows, those of scenes and resolutions that are among the new ones replaced, by scene and spacing."""
+    new = list(new)
+    renewed = {(row["scene"], row["resolution"]) for row in new}
+    kept = [row for row in old if (row["scene"], row["resolution"]) not in renewed]
+    return sorted([*kept, *new], key=lambda row: (row["scene"], -row["resolution"]))
+
+
+def table(rows: Iterable[Row]) -> str:
+    """A Markdown table of all rows and, below it, where they were computed."""
+    rows = list(rows)
+    lines = [_line(COLUMNS), _line(["---"] * len(COLUMNS)), *(_line(_cells(row)) for row in rows)]
+    return "\n".join([*lines, "", _machines(rows)])
+
+
+def summary(rows: Iterable[Row]) -> str:
+    """A Markdown table with a line a scene: its finest resolution, and each quantity that has a bound."""
+    rows = list(rows)
+    lines = [_line(SUMMARY), _line(["---"] * len(SUMMARY))]
+    for _, of_scene in groupby(rows, key=lambda row: row["scene"]):
+        lines.append(_line(_summary_cells(list(of_scene))))
+    return "\n".join([*lines, "", _machines(rows)])
+
+
+def replace_block(text: str, block: str, name: str) -> str:
+    """The text with what stands between the two marks replaced. Raises ValueError if a mark is missing."""
+    before, begin, rest = text.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not (begin and end):
+        raise ValueError(f"{name} needs the lines {BEGIN} and {END}, in this order")
+    return f"{before}{BEGIN}\n{block}\n{END}{after}"
+
+
+def _machines(rows: Iterable[Row]) -> str:
+    found = sorted({f"{r['device']}, {_plural(r['threads'], 'thread')}" for r in rows if r["device"]})
+    return f"Computed on: {'; '.join(found)}. **Bold**: the bound does not hold."
+
+
+def _plural(count: int, noun: str) -> str:
+    return f"{count} {noun}{'' if count == 1 else 's'}"
+
+
+def _cells(row: Row) -> list[str]:
+    error = _error(row["error"], row)
+    return [
+        f"`{row['scene']}`",
+        _number(row["resolution"]),
+        _number(row["particles"], digits=8),
+        row["quantity"],
+        _number(row["value"]),
+        _number(row["reference"]),
+        f"**{error}**" if row["holds"] is False else error,
+        _error(row["bound"], row),
+        _number(row["steps"], digits=8),
+        _number(row["wall_seconds"], digits=3),
+    ]
+
+
+def _summary_cells(rows: list[Row]) -> list[str]:
+    finest = min(row["resolution"] for row in rows)
+    of_finest = [row for row in rows if row["resolution"] == finest]
+    first = of_finest[0]
+    return [
+        f"`{first['scene']}`",
+        _number(finest),
+        _number(first["particles"], digits=8),
+        "; ".join(_verdicts(of_finest)),
+        _number(first["wall_seconds"], digits=3),
+    ]
+
+
+def _verdicts(rows: Iterable[Row]) -> list[str]:
+    """Errors with their bounds, then what stays within its limits and what does not."""
+    bounded = [row for row in rows if row["bound"] is not None]
+    errors = [_verdict(row) for row in bounded if not row.get("error_unit")]
+    limits = [row for row in bounded if row.get("error_unit")]
+    kept = ", ".join(_words(row) for row in limits if row["holds"])
+    broken = ", ".join(_words(row) for row in limits if not row["holds"])
+    return [
+        *errors,
+        *([f"within limits: {kept}"] if kept else []),
+        *([f"**beyond: {broken}**"] if broken else []),
+    ]
+
+
+def _verdict(row: Row) -> str:
+    text = f"{_words(row)} {_error(row['error'], row)} ({_error(row['bound'], row)})"
+    return text if row["holds"] else f"**{text}**"
+
+
+def _words(row: Row) -> str:
+    return str(row["quantity"]).replace("_", " ")
+
+
+def _number(value: float | None, digits: int = 4) -> str:
+    return "-" if value is None else f"{value:.{digits}g}"
+
+
+def _error(error: float | None, row: Row) -> str:
+    if error is None:
+        return "-"
+    unit = row.get("error_unit")
+    return f"{error:.2g} {unit}" if unit else f"{100.0 * error:.2g} %"
+
+
+def _line(cells: Iterable[str]) -> str:
+    return f"| {' | '.join(cells)} |"
+
+
+def _read(path: Path) -> list[Row]:
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
+
+
+def _rewrite(path: Path, block: str) -> None:
+    path.write_text(replace_block(path.read_text(encoding="utf-8"), block, path.name), encoding="utf-8")
+
+
+def main(results: Path | None) -> None:
+    """Take the JSON lines of a file into the record and write both tables."""
+    rows = merged(_read(RECORD), _read(results) if results else ())
+    slim = [{key: value for key, value in row.items() if key not in ("samples", "source")} for row in rows]
+    RECORD.write_text("".join(json.dumps(row) + "\n" for row in slim), encoding="utf-8")
+    _rewrite(PAGE, table(rows))
+    _rewrite(README, summary(rows))
+
+
+if __name__ == "__main__":
+    if len(sys.argv) > 2:
+        sys.exit(__doc__)
+    main(Path(sys.argv[1]) if len(sys.argv) == 2 else None)
