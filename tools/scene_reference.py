@@ -26,7 +26,8 @@ filled in.
 
 - Units are SI: metres, seconds, kilograms, pascals; angles are in degrees. Two dimensions mean unit depth.
 - Every vector has as many components as `dimension` says.
-- Names of fluids, boundaries, probes and references are a letter, then letters, digits and underscores.
+- Names of fluids, boundaries, structures, clamps, loads, probes and references are a letter, then letters,
+  digits and underscores.
 - An expression is arithmetic in `x`, `y`, `z` [m] and, where the time has a meaning, `t` [s]:
   `+ - * / % **`, comparisons, `pi`, and {", ".join(f"`{name}`" for name in sorted(FUNCTIONS))}.
 - A CSV file has a header line; empty lines and lines that begin with `#` are skipped. File names count from
@@ -74,12 +75,21 @@ OBJECTS = (
     ("numerics", "Numerics"),
     ("fluids.*", "Fluid"),
     ("boundaries.*", "Boundary"),
+    ("structures.*", "Structure"),
+    ("structures.*.material", "Material"),
+    ("structures.*.clamps.*", "Clamp"),
+    ("numerics.structure", "StructureNumerics"),
+    ("contact", "Contact"),
     ("output", "Output"),
     ("validation", "Validation"),
 )
 UNIONS = (
-    ("Shapes", "`shape` of fluids and boundaries", ("Boundary", "shape")),
-    ("Motions", "each item of `motion` of boundaries", ("Boundary", "motion")),
+    (
+        "Shapes",
+        "`shape` of fluids, boundaries and structures, `region` of clamps and loads",
+        ("Boundary", "shape"),
+    ),
+    ("Motions", "each item of `motion` of boundaries and clamps", ("Boundary", "motion")),
     ("State", "`numerics.state`", ("Numerics", "state")),
     ("Density diffusion", "`numerics.density_diffusion`", ("Numerics", "density_diffusion")),
     ("Viscosity", "`numerics.viscosity`", ("Numerics", "viscosity")),
@@ -87,6 +97,8 @@ UNIONS = (
     ("Particle order", "`numerics.particle_order`", ("Numerics", "particle_order")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
     ("Initial pressure", "`pressure` of fluids", ("Fluid", "pressure")),
+    ("Loads", "each value of `loads` of structures", ("Structure", "loads")),
+    ("Solutions", "`numerics.structure.solution`", ("StructureNumerics", "solution")),
     ("Probes", "each value of `probes`", None),
     ("References", "each value of `references`", None),
 )
@@ -127,7 +139,8 @@ def _union(section: str, source: tuple[str, str] | None) -> Node:
         return next(iter(SCHEMA["properties"][section]["patternProperties"].values()))
     name, key = source
     node = _definition(name)["properties"][key]
-    return node.get("items", node)
+    named = node.get("patternProperties", {}).values()
+    return next(iter(named), node.get("items", node))
 
 
 def _choices(union: Node) -> Iterator[tuple[str, Node]]:

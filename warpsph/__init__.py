@@ -1,13 +1,13 @@
-"""warpsph: particle fluids on NVIDIA Warp, from a YAML scene to a USD point cache."""
+"""warpsph: particle fluids and structures on NVIDIA Warp, from a YAML scene to a USD point cache."""
 
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from warpsph.extending import register_material as register_material
     from warpsph.extending import register_smoothing_kernel as register_smoothing_kernel
     from warpsph.extending import register_state as register_state
     from warpsph.extending import register_viscosity as register_viscosity
-    from warpsph.physics.registration import register_material as register_material
     from warpsph.scene.loader import load_scene as load_scene
     from warpsph.scene.schema import Scene as Scene
     from warpsph.solver.run import run_scene as run_scene
@@ -29,10 +29,10 @@ _HOMES = {
     "Scene": "warpsph.scene.schema",
     "Simulation": "warpsph.solver.simulation",
     "load_scene": "warpsph.scene.loader",
+    "register_material": "warpsph.extending",
     "register_smoothing_kernel": "warpsph.extending",
     "register_state": "warpsph.extending",
     "register_viscosity": "warpsph.extending",
-    "register_material": "warpsph.physics.registration",
     "run_scene": "warpsph.solver.run",
 }
 

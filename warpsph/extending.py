@@ -1,4 +1,4 @@
-"""Formulas of a user's own: smoothing kernels, equations of state and viscosities, added by name.
+"""Formulas of a user's own: smoothing kernels, equations of state, viscosities and constitutive laws, added by name.
 
 A formula is a Warp function on the device; what the host needs of it is tabulated from that function, so that it is
 written once. `make` gets the types of a run (`warpsph_kernels.arithmetic.Arithmetic`: `real`, `vector`, `parameters`),
@@ -15,11 +15,13 @@ from typing import Any
 import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import PARAMETERS, Arithmetic
+from warpsph_kernels.materials import LAWS, LawFactory
 from warpsph_kernels.pair_terms import VISCOSITIES
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS, SmoothingKernel
 from warpsph_kernels.state import STATES, EquationOfState, difference_stiffening
 from warpsph_kernels.tabulate import make_kernel_table, make_state_table
 
+from warpsph.laws.materials import MATERIAL_LAWS, MaterialLaw
 from warpsph.laws.smoothing import SMOOTHING_LAWS, SmoothingLaw
 from warpsph.laws.states import STATE_LAWS, StateLaw
 from warpsph.laws.viscosities import VISCOSITY_LAWS, ViscosityLaw
@@ -118,6 +120,22 @@ def register_viscosity(
     _require_few(parameters)
     VISCOSITIES[name] = cache(lambda arithmetic: _function(make(arithmetic)))
     VISCOSITY_LAWS[name] = ViscosityLaw(tuple(parameters), step_viscosity or (lambda nu, *_: nu))
+
+
+def register_material(name: str, factory: LawFactory, plane_stress: bool = False) -> None:
+    """Add a constitutive law of structures, which scenes then choose by `material.law`.
+
+    Args:
+        factory: takes `LawOptions`, returns the device function (H, p) -> (P [Pa], psi [Pa], P_33 [Pa]); see
+            `warpsph_kernels.materials`. P has to be the derivative of psi, or energy is not conserved.
+        plane_stress: whether the factory heeds `options.plane_stress`.
+
+    Raises:
+        ValueError: if the name is taken.
+    """
+    _require_new(name, LAWS)
+    LAWS[name] = factory
+    MATERIAL_LAWS[name] = MaterialLaw(plane_stress)
 
 
 def _function(formula: Any) -> Any:

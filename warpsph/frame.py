@@ -39,7 +39,8 @@ def field_unit(name: str, dimension: int) -> str:
 
 @dataclass(frozen=True)
 class SetFrame:
-    """One particle set: its fields by name, each of shape (n,) or (n, dimension), in the same particle order.
+    """One particle set: its fields by name, each of shape (n,), (n, dimension) or, for tensors,
+    (n, rows, columns), in the same particle order.
 
     `id` is int64; `position` is float64 in m; the other fields are in the units of `FIELD_UNITS`.
     `kind` is "fluid", "boundary" or "structure".

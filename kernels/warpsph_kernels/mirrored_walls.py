@@ -59,6 +59,17 @@ def make_look_into_mirror(options: FluidOptions) -> Any:
             basis[k + 1] = x_bg[k] * c.inverse_h
         return test, basis
 
+    @wp.func
+    def interpolated(left: system, right: columns):
+        """Values in the first row, h times their gradients below; the mean and no gradient where those are unknown."""
+        fields = columns()
+        if wp.abs(wp.determinant(left)) > real(wp.static(SMALLEST_DETERMINANT)):
+            fields = wp.inverse(left) * right
+        else:
+            for k in range(wp.static(unknowns)):
+                fields[0, k] = right[0, k] / left[0, 0]
+        return fields
+
     @wp.kernel(module=f"{options.module}_mirror", enable_backward=False)
     def look_into_mirror(
         offset: int,
@@ -108,12 +119,10 @@ def make_look_into_mirror(options: FluidOptions) -> Any:
         v_seen = v_w
         # A neighbour at the rim of the support has no weight in single precision: there is nothing to interpolate.
         if left[0, 0] > real(1.0e-6):
-            fields = right / left[0, 0]
-            if wp.abs(wp.determinant(left)) > real(wp.static(SMALLEST_DETERMINANT)):
-                fields = wp.inverse(left) * right
-                for k in range(wp.static(dim)):
-                    p_w -= fields[k + 1, 0] * way[k] * c.inverse_h
-            p_w += fields[0, 0]
+            fields = interpolated(left, right)
+            p_w = fields[0, 0]
+            for k in range(wp.static(dim)):
+                p_w -= fields[k + 1, 0] * way[k] * c.inverse_h
             if wp.static(not options.wall_suction):
                 p_w = wp.max(p_w, real(0.0))
             if wp.static(options.wall_friction):

@@ -46,6 +46,8 @@ class StructureOptions:
     """Number of loads with a time law, gravity not counted."""
     damped: bool
     contact: bool
+    moving_walls: bool
+    """Whether some wall that is touched moves by a prescribed law."""
     thin: bool
     """Whether the neighbours of some particle lie in a plane or on a line."""
 

@@ -115,3 +115,12 @@ def test_a_bound_may_fall_with_the_spacing() -> None:
     assert row_of(values, feature="maximum", value=1.0, bound=levels).bound == 0.03
     assert row_of(values, feature="maximum", value=1.0, bound=[[0.15, 0.04], [0.05, 0.01]]).bound == 0.04
     assert row_of(values, feature="maximum", value=1.0, bound=[[0.05, 0.01]]).holds is None
+
+
+def test_the_extreme_of_an_angle_is_found_beyond_a_turn() -> None:
+    """4 sin(t pi / 2) rad passes pi, where atan2 goes on from -pi; its maximum is at 1 s."""
+    angle = 4.0 * np.sin(0.5 * np.pi * TIMES)
+    wrapped = (angle + np.pi) % (2.0 * np.pi) - np.pi
+    unrolled = row_of(wrapped, feature="maximum_time", value=1.0, bound=1e-6, unroll=2.0 * np.pi)
+    assert unrolled.holds is True
+    assert row_of(wrapped, feature="maximum_time", value=1.0, bound=1e-6).holds is False

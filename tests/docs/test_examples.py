@@ -89,7 +89,7 @@ def test_the_law_of_the_materials_page_conserves_energy(tmp_path: Path) -> None:
 
 
 def test_a_law_is_registered_once() -> None:
-    with pytest.raises(ValueError, match="there is a law 'neo_hookean' already"):
+    with pytest.raises(ValueError, match="there is a 'neo_hookean' already"):
         register_material("neo_hookean", LAWS["neo_hookean"])
 
 

@@ -28,7 +28,13 @@ CONCEPTS = ("stress", "density_gradient", "order", "summation", "gradient_correc
 def test_structure_code_compiles_for_cuda(tmp_path, dimension, precision, law):
     arithmetic = Arithmetic(dimension, precision)
     options = StructureOptions(
-        arithmetic=arithmetic, moving_clamps=True, loads=2, damped=True, contact=False, thin=True
+        arithmetic=arithmetic,
+        moving_clamps=True,
+        loads=2,
+        damped=True,
+        contact=False,
+        moving_walls=False,
+        thin=True,
     )
     make_structure_kernels(options)
     for make in (make_stress_kernel, make_survey_kernel, make_observation_kernel):

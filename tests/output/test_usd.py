@@ -7,7 +7,7 @@ import pytest
 from pxr import Usd, UsdGeom, UsdValidation
 from sample_frames import FRAME_RATE, SPACING, frame_of, particle_set, tank_scene
 
-from warpsph.frame import Frame
+from warpsph.frame import Frame, SetFrame
 from warpsph.output.usd import UsdStore
 from warpsph.output.usd_layers import up_axis
 from warpsph.scene.schema import Scene
@@ -53,7 +53,13 @@ def test_stage_says_unit_axis_rate_and_range(stage, scene):
 
 @pytest.mark.parametrize(
     ("gravity", "axis"),
-    [((0.0, -9.81), "Y"), ((0.0, -9.81, 0.0), "Y"), ((0.0, 0.5, -9.8), "Z"), ((9.81, 0.0, 0.0), "Y")],
+    [
+        ((0.0, -9.81), "Y"),
+        ((0.0, -9.81, 0.0), "Y"),
+        ((0.0, 0.5, -9.8), "Z"),
+        ((9.81, 0.0, 0.0), "Y"),
+        ((0.0, 0.0, 0.0), "Z"),
+    ],
 )
 def test_up_is_against_gravity_where_usd_can_say_so(gravity, axis):
     assert up_axis(gravity) == axis
@@ -125,6 +131,28 @@ def test_only_the_fields_that_the_scene_names_are_stored(tmp_path):
     stored = {primvar.GetPrimvarName() for primvar in UsdGeom.PrimvarsAPI(prim).GetPrimvarsWithValues()}
     assert stored == {"displayColor", "mass"}
     assert prim.GetAttribute("primvars:mass").GetCustomDataByKey("unit") == "kg/m"
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_tensors_of_structures_are_matrices_of_three_rows(tmp_path, dimension):
+    """Stress has three rows in the plane too, strain but two: the third is zero there."""
+    fields = ["cauchy_stress", "green_lagrange_strain", "volume_ratio"]
+    scene = tank_scene(dimension, fields=fields)
+    given = particle_set("water", "structure", 5, dimension, seed=1)
+    random = np.random.default_rng(0)
+    stress, strain = random.normal(size=(5, 3, 3)), random.normal(size=(5, dimension, dimension))
+    values = {"cauchy_stress": stress, "green_lagrange_strain": strain, "volume_ratio": np.ones(5)}
+    store = UsdStore(tmp_path / "particles.usdc", scene)
+    store.open()
+    store.write(Frame(0, 0.0, dimension, 0.1, (SetFrame("water", "structure", {**given.fields, **values}),)))
+    store.close()
+    stage = Usd.Stage.Open(str(tmp_path / "particles.usdc"))
+    primvars = UsdGeom.PrimvarsAPI(points_of(stage, "water"))
+    np.testing.assert_array_equal(np.array(primvars.GetPrimvar("cauchy_stress").Get(0.0)), stress)
+    stored = np.array(primvars.GetPrimvar("green_lagrange_strain").Get(0.0))
+    np.testing.assert_array_equal(stored[:, :dimension, :dimension], strain)
+    assert not stored[:, dimension:].any()
+    assert str(primvars.GetPrimvar("volume_ratio").GetTypeName()) == "float[]"
 
 
 def test_last_frame_between_two_frame_times_keeps_its_time(tmp_path, scene):

@@ -52,20 +52,20 @@ def tip_deflection(thick: int, nu: float, plane: str) -> float:
     return -u[X[:, 0] > length - spacing, 1].mean() / beam
 
 
-@pytest.mark.parametrize("thick", [3, 6])
-def test_few_particles_through_the_thickness_bend_as_a_beam(thick):
-    """The clamp gives way by up to 0.7 spacings, and the tip of a uniformly loaded beam follows the fourth power.
+@pytest.mark.parametrize(("thick", "error"), [(3, 0.03), (6, 0.015)])
+def test_few_particles_through_the_thickness_bend_as_a_beam(thick, error):
+    """Measured: -2.5 % with three particles, -1.0 % with six, -0.8 % with eight.
 
-    Measured: +7.6 % with three particles, +4.0 % with six, +3.0 % with eight.
+    Of second order in the spacing, (1/2n)^2 = 2.8 % and 0.7 %, beside some 0.5 % by which Timoshenko's clamp, free to
+    warp, differs from one that holds the whole section.
     """
-    beam_longer_by_the_clamp = (1.0 + 0.7 / (8 * thick)) ** 4
-    assert 1.0 < tip_deflection(thick, NU, "stress") < beam_longer_by_the_clamp
+    assert abs(tip_deflection(thick, NU, "stress") - 1.0) < error
 
 
 def test_a_poisson_ratio_near_one_half_does_not_lock():
     """In plane strain the beam is stiffer by 1/(1 - nu^2) alone; one that locks would hardly bend, at any spacing.
 
-    Measured: -11 % with three particles through the thickness, -21 % with four, -7 % with six, -4 % with eight.
+    Measured: -13 % with three particles through the thickness, -22 % with four, -8 % with six, -5 % with eight.
     """
     worst, fine = (tip_deflection(thick, 0.49, "strain") for thick in (4, 8))
     assert abs(worst - 1.0) < 0.25
@@ -105,7 +105,7 @@ def uniaxial_neo_hookean(stretch: float) -> tuple[float, float]:
 
 
 def test_a_bar_stretched_to_three_times_its_length():
-    """In the middle the state is that of uniaxial stretch; the clamps are three and a third widths away."""
+    """In the middle the state is that of uniaxial stretch; the clamps are more than a width away."""
     simulation = pulled("neo_hookean", 2.3, 0.3)
     X = reference_of(simulation.system)
     mid = int(np.argmin(np.linalg.norm(X - [0.65, 0.15], axis=1)))
@@ -120,13 +120,13 @@ def test_a_bar_stretched_to_three_times_its_length():
 @pytest.mark.parametrize("law", ["neo_hookean", "split_neo_hookean"])
 def test_a_block_compressed_to_half_its_length(law):
     """Laws whose energy grows without bound as J goes to zero hold; the hourglass penalty does not carry the block."""
-    simulation = pulled(law, -0.65, 0.8)
+    simulation = pulled(law, -0.52, 0.8)
     X, u = reference_of(simulation.system), simulation.array("displacement").numpy()
     x = X + u
     axis = (X[:, 0] > 0.2) & (X[:, 0] < 1.2) & (abs(X[:, 1] - 0.4) < 0.1)
     assert np.ptp(x[axis, 0]) < 0.5 * np.ptp(X[axis, 0])
     energies = simulation.ledger().energies
-    # From a quarter on, a summary would warn that the penalty carries the result. Measured: 5 % and 19 %.
+    # From a quarter on, a summary would warn that the penalty carries the result. Measured: 2 % and 1 %.
     assert energies["hourglass"] < 0.25 * elastic(simulation.ledger())
 
 

@@ -175,3 +175,25 @@ def test_the_hourglass_penalty_sees_what_the_gradient_does_not():
         assert strongest > 1e-3 * zeta * YOUNG * 0.1 if zeta else strongest < 1e-9
     assert energies[0.0]["hourglass"] == 0.0
     assert energies[0.5]["hourglass"] > 0.0
+
+
+def test_a_clamp_has_no_energy_and_pulls_by_the_gradient_of_the_rest():
+    """Rigid particles move as the clamp says; f = -dE/du on the free ones, and the clamp's reaction balances them."""
+    held = {"root": {"region": {"type": "box", "min": (0.0, 0.0), "max": (0.2, 0.4)}}}
+    one = system_of(block((0.6, 0.4), structure={"clamps": held}))
+    X = reference_of(one)
+    free = X[:, 0] > 0.2
+    u = np.where(free[:, None], np.random.default_rng(4).uniform(-0.015, 0.015, X.shape), 0.0)
+    deform(one, u)
+    force = forces(one)
+    assert (gradients(one)[~free] == 0.0).all()
+    assert np.abs(force.sum(axis=0)).max() < 1e-12 * np.abs(force).sum()
+    for particle in np.flatnonzero(free)[[0, 1, 5, -1]]:
+        shift = np.zeros_like(u)
+        shift[particle, 1] = 1e-6
+        sides = []
+        for sign in (1.0, -1.0):
+            deform(one, u + sign * shift)
+            sides.append(elastic_energy(one))
+        slope = (sides[0] - sides[1]) / 2e-6
+        assert force[particle, 1] == pytest.approx(-slope, abs=1e-7 * np.abs(force).max())

@@ -4,7 +4,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from builders import still_tank
 from scipy.spatial import cKDTree
+from structure_builders import block
 
 from warpsph.sampling.distance import signed_distance
 from warpsph.sampling.lattice import Lattice
@@ -29,8 +31,14 @@ def wall(
 
 @pytest.mark.parametrize(("support", "layers"), [(3.0, 3), (2.6, 3), (2.0 * 1.5, 3), (2.0, 2), (4.1, 5)])
 def test_automatic_layers_reach_as_far_as_the_support(support: float, layers: int) -> None:
-    assert layer_count(boundary(SQUARE), support) == layers
-    assert layer_count(boundary(SQUARE, layers=7), support) == 7
+    scene = still_tank(numerics={"h_over_dp": support / 2.0})
+    assert layer_count(boundary(SQUARE), scene) == layers
+    assert layer_count(boundary(SQUARE, layers=7), scene) == 7
+
+
+def test_structures_touch_walls_of_one_layer() -> None:
+    assert layer_count(boundary(SQUARE), block()) == 1
+    assert layer_count(boundary(SQUARE, layers=7), block()) == 7
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ import math
 
 import numpy as np
 
-from warpsph.comparison.row import Comparison, History
+from warpsph.comparison.row import Comparison, History, column_of
 from warpsph.output.probes_csv import TIME_COLUMN
 from warpsph.scene.references import FeatureReference, LimitReference
 from warpsph.scene.schema import Scene
@@ -44,7 +44,8 @@ def window_of(
     slack = 1e-9 * max(1.0, last)
     within = (time >= first - slack) & (time <= last + slack)
     reached = time.size > 0 and time[-1] >= last - _sampling_interval(scene) - slack
-    return time[within], history[reference.column][within], bool(reached)
+    unroll = reference.unroll if isinstance(reference, FeatureReference) else None
+    return time[within], column_of(history, reference.column, unroll)[within], bool(reached)
 
 
 def _window(reference: LimitReference | FeatureReference, scene: Scene) -> tuple[float, float]:

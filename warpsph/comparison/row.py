@@ -82,6 +82,12 @@ def finite_or_none(number: float) -> float | None:
     return float(number) if math.isfinite(number) else None
 
 
+def column_of(history: History, column: str, unroll: float | None) -> np.ndarray:
+    """Values of a probe column; those that begin anew at the period `unroll` continued from the first on."""
+    values = history[column]
+    return values if unroll is None else np.unwrap(values, period=unroll)
+
+
 def relative_errors(values: np.ndarray, references: np.ndarray, relative_to: RelativeTo) -> np.ndarray:
     """Signed errors over the reference values themselves, their largest magnitude, or a scale in their unit."""
     match relative_to:

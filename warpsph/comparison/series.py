@@ -11,6 +11,7 @@ from warpsph.comparison.row import (
     Comparison,
     History,
     Sample,
+    column_of,
     relative_errors,
     representative,
 )
@@ -57,7 +58,7 @@ def compare_series(name: str, reference: SeriesReference, scene: Scene, history:
     With `lag: fit` the reference is shifted by the lag that makes the root mean square of the row's errors
     least: the run at t + lag then stands against the reference at t.
     """
-    computed = Series(history[TIME_COLUMN], _column(reference, history))
+    computed = Series(history[TIME_COLUMN], column_of(history, reference.column, reference.unroll))
     expected = _expected(reference, scene)
     lag, note = _fitted_lag(computed, expected, reference) if reference.lag == "fit" else (None, None)
     pairs = _lagged(computed, expected, reference, lag or 0.0)
@@ -77,11 +78,6 @@ def compare_series(name: str, reference: SeriesReference, scene: Scene, history:
         samples=tuple(Sample(*row) for row in np.column_stack(columns).tolist()),
         note=_why_missing(pairs, computed) or note,
     )
-
-
-def _column(reference: SeriesReference, history: History) -> np.ndarray:
-    values = history[reference.column]
-    return values if reference.unroll is None else np.unwrap(values, period=reference.unroll)
 
 
 def read_table(reference: SeriesReference, scene: Scene) -> Series:

@@ -15,6 +15,11 @@ GEOMETRY_TYPES: dict[str, Sdf.ValueTypeName] = {
     "ids": Sdf.ValueTypeNames.Int64Array,
     "extent": Sdf.ValueTypeNames.Float3Array,
 }
+PRIMVAR_TYPES: dict[type, Sdf.ValueTypeName] = {
+    Vt.FloatArray: Sdf.ValueTypeNames.FloatArray,
+    Vt.Vec3fArray: Sdf.ValueTypeNames.Vector3fArray,
+    Vt.Matrix3dArray: Sdf.ValueTypeNames.Matrix3dArray,
+}
 GEOMETRY_UNITS = {"points": "m", "velocities": "m/s", "widths": "m", "ids": "1", "extent": "m"}
 NOT_PRIMVARS = {"position", "velocity", "id"}
 COLOURS = {"fluid": (0.15, 0.4, 0.75), "boundary": (0.55, 0.55, 0.55), "structure": (0.85, 0.5, 0.2)}
@@ -54,9 +59,14 @@ def sample_values(particle_set: SetFrame, spacing: float, scene: Scene) -> dict[
 
 
 def field_value(values: np.ndarray) -> object:
-    """A scalar (n,) or vector (n, dimension) field as a USD array."""
+    """A scalar (n,), vector (n, dimension) or tensor (n, dimension, dimension) field as a USD array.
+
+    Tensors are matrices of three rows in double precision: USD has no other, and Houdini takes them as they are.
+    """
     if values.ndim == 1:
         return Vt.FloatArray.FromNumpy(np.ascontiguousarray(values, dtype=np.float32))
+    if values.ndim == 3:
+        return Vt.Matrix3dArray.FromNumpy(_three_by_three(values))
     return Vt.Vec3fArray.FromNumpy(_three_components(values))
 
 
@@ -91,8 +101,9 @@ def set_stage_metadata(layer: Sdf.Layer, scene: Scene) -> None:
 
 
 def up_axis(gravity: Sequence[float]) -> str:
-    """Z where gravity acts mostly along z, otherwise Y; USD knows no other."""
-    return UsdGeom.Tokens.z if int(np.argmax(np.abs(gravity))) == 2 else UsdGeom.Tokens.y
+    """Z where gravity acts mostly along z or space has no gravity, otherwise Y; USD knows no other."""
+    strongest = int(np.argmax(np.abs(gravity))) if np.any(gravity) else len(gravity) - 1
+    return UsdGeom.Tokens.z if strongest == 2 else UsdGeom.Tokens.y
 
 
 def add_samples(layer: Sdf.Layer, path: Sdf.Path, values: Mapping[str, object], time_code: float) -> None:
@@ -140,11 +151,16 @@ def _state_unit(attribute: Usd.Attribute, name: str, unit: str) -> None:
 
 
 def _primvar_type(value: object) -> Sdf.ValueTypeName:
-    types = Sdf.ValueTypeNames
-    return types.FloatArray if isinstance(value, Vt.FloatArray) else types.Vector3fArray
+    return next(name for array, name in PRIMVAR_TYPES.items() if isinstance(value, array))
 
 
 def _three_components(vectors: np.ndarray) -> np.ndarray:
     padded = np.zeros((len(vectors), 3), dtype=np.float32)
     padded[:, : vectors.shape[1]] = vectors
+    return padded
+
+
+def _three_by_three(tensors: np.ndarray) -> np.ndarray:
+    padded = np.zeros((len(tensors), 3, 3))
+    padded[:, : tensors.shape[1], : tensors.shape[2]] = tensors
     return padded

@@ -141,9 +141,12 @@ def allocate_state(arithmetic: Arithmetic, count: int, device: Any) -> Structure
 
 
 def allocate_scratch(
-    options: StructureOptions, count: int, blocks: int, clamps: int, device: Any
+    options: StructureOptions, count: int, blocks: int, motions: int, device: Any
 ) -> StructureScratch:
-    """Return zeroed scratch arrays; what the options leave out has a single entry."""
+    """Return zeroed scratch arrays; what the options leave out has a single entry.
+
+    `motions` is the number of moving clamps and walls.
+    """
     arithmetic = options.arithmetic
     matrix, real = make_matrix(arithmetic), arithmetic.real
     zeros: Callable[..., wp.array] = lambda shape, dtype: wp.zeros(shape, dtype=dtype, device=device)  # noqa: E731
@@ -154,7 +157,7 @@ def allocate_scratch(
         contact_force=zeros(count if options.contact else 1, arithmetic.vector),
         extremes=zeros((max(blocks, 1), EXTREMES), wp.float64),
         load_factor=zeros((SUB_STEPS + 1, max(options.loads, 1)), wp.float64),
-        prescriptions=zeros((SUB_STEPS + 1, max(clamps, 1)), prescription),
+        prescriptions=zeros((SUB_STEPS + 1, max(motions, 1)), prescription),
         energies=zeros((count, 2), wp.float64),
         cauchy=zeros(count, wp.types.matrix((3, 3), real)),
     )
@@ -194,8 +197,8 @@ class StructureModel:
 
     @property
     def has_time_laws(self) -> bool:
-        """Whether loads or clamps change with time."""
-        return self.options.loads > 0 or self.options.moving_clamps
+        """Whether loads, clamps or walls change with time."""
+        return self.options.loads > 0 or self.options.moving_clamps or self.options.moving_walls
 
     def drift(self) -> None:
         """Advance the velocity over half a step and the displacement over the whole."""

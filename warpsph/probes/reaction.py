@@ -5,9 +5,13 @@ import numpy as np
 from warpsph.frame import Frame
 from warpsph.probes.mechanics import resultant
 from warpsph.probes.probe import Probe
-from warpsph.sampling.loads import inside
+from warpsph.sampling.distance import signed_distance
 from warpsph.scene.probes import ReactionProbe as ReactionSpec
 from warpsph.scene.schema import Scene
+
+NEAR = 0.1
+"""Spacings beyond the region within which a particle is counted: clamped ones stand on its surface, up to rounding, and
+free ones have no reaction."""
 
 
 class ReactionProbe(Probe):
@@ -29,7 +33,7 @@ class ReactionProbe(Probe):
         """Find the clamped particles, and their centre where the scene names no other point."""
         fields = frame.set_named(self._structure).fields
         rest = fields["position"] - fields["displacement"]
-        self._held = inside(self._region, rest, self._spacing)
+        self._held = signed_distance(self._region, rest) <= NEAR * self._spacing
         if self._about is None:
             self._about = rest[self._held].mean(axis=0)
 

@@ -87,7 +87,7 @@ class ParticleCache:
         return [int(index) for index in np.unique(spread.round())]
 
     def frame(self, index: int, field: str) -> RenderedFrame:
-        """Frame number `index` (of `codes`) with a field to colour by; a vector field gives its magnitude."""
+        """Frame number `index` (of `codes`) with a field to colour by; a vector or tensor field gives its magnitude."""
         code = self.codes[index]
         sets = tuple(self._set(s, code, field) for s in self._sets)
         return RenderedFrame(code / self.frame_rate, sets)
@@ -112,7 +112,7 @@ class ParticleCache:
         if not attribute or not attribute.HasValue():
             return None
         values = self._array(attribute, code).astype(np.float64)
-        return np.linalg.norm(values, axis=1) if values.ndim == 2 else values
+        return np.sqrt(np.sum(values**2, axis=tuple(range(1, values.ndim)))) if values.ndim > 1 else values
 
     @staticmethod
     def _attribute(points: UsdGeom.Points, field: str) -> Usd.Attribute:

@@ -96,7 +96,7 @@ def _wall_period_problems(scene: Scene, name: str) -> Iterator[Problem]:
     boundary = scene.boundaries[name]
     low, high = bounding_box(boundary.shape)
     outwards = boundary.side == "outside" and not isinstance(boundary.shape, Plane)
-    layers = layer_count(boundary, scene.support_radius / scene.spacing) if outwards else 0
+    layers = layer_count(boundary, scene) if outwards else 0
     for axis, (start, end) in scene.domain.periodic.items():
         k, margin = AXES.index(axis), _WHOLE * scene.spacing
         spans = low[k] <= start + margin and high[k] >= end - margin

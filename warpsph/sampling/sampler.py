@@ -63,10 +63,9 @@ def _refuse(problems: Iterable[Problem]) -> None:
 
 def _walls(scene: Scene, lattices: Mapping[str, Lattice]) -> Positions:
     """Wall particles; where walls overlap that move alike, those of the later one are left out."""
-    support = scene.support_radius / scene.spacing
     walls: dict[str, np.ndarray] = {}
     for name, boundary in scene.boundaries.items():
-        points = sample_wall(boundary, lattices[name], layer_count(boundary, support), period_of(scene))
+        points = sample_wall(boundary, lattices[name], layer_count(boundary, scene), period_of(scene))
         for earlier, others in walls.items():
             if scene.boundaries[earlier].motion == boundary.motion:
                 points = away_from(points, others, CLOSEST * scene.spacing)

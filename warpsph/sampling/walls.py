@@ -26,11 +26,11 @@ def period_of(scene: Scene) -> Period:
     return {AXES.index(axis): ends for axis, ends in scene.domain.periodic.items()}
 
 
-def layer_count(boundary: Boundary, support_over_spacing: float) -> int:
-    """Layers [1] of a wall: as given, or so many that no particle before the wall sees past it."""
-    if boundary.layers == "auto":
-        return math.ceil(support_over_spacing - TIE)
-    return boundary.layers
+def layer_count(boundary: Boundary, scene: Scene) -> int:
+    """Layers [1] of a wall: as given, or so many that no fluid before the wall sees past it; for structures one."""
+    if boundary.layers != "auto":
+        return boundary.layers
+    return math.ceil(scene.support_radius / scene.spacing - TIE) if scene.fluids else 1
 
 
 def sample_wall(boundary: Boundary, lattice: Lattice, layers: int, period: Period) -> np.ndarray:

@@ -222,6 +222,10 @@ class FeatureReference(_Reference):
     average: PositiveReal | None = None
     """The column is averaged over this time about each sample first [s]; null: it is taken as it is. Default: null."""
 
+    unroll: PositiveReal | None = None
+    """The column begins anew at this period, as an angle does at 2 pi; it is continued from its first value on, in the
+    unit of the column; null: it does not. Default: null."""
+
     threshold: Real | None = None
     """Value of the column that counts as arrival; for arrival and first peaks. Default: null."""
 

@@ -171,11 +171,11 @@ class Output(SceneModel):
     hdf5: Flag = False
     """Write frames.h5. Default: false."""
 
-    fields: tuple[OutputField, ...] = ("velocity", "density", "pressure")
-    """Fields in the frames beside position and id: velocity, mass; of fluids density, pressure, vorticity [1/s] and
-    free_surface (1 there, else 0); of structures
-    displacement, cauchy_stress, von_mises, green_lagrange_strain, volume_ratio (J).
-    Default: velocity, density, pressure."""
+    fields: tuple[OutputField, ...] = ("velocity", "density", "pressure", "displacement", "von_mises")
+    """Fields in the frames beside position and id, each where a set has it: velocity [m/s], mass [kg]; of fluids
+    density [kg/m3], pressure [Pa], vorticity [1/s] and free_surface (1 there, else 0); of structures displacement [m],
+    cauchy_stress and von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1].
+    Default: velocity, density, pressure, displacement, von_mises."""
 
     checkpoint_every: PositiveInteger | None = None
     """Frames between checkpoints [1]; null: about every tenth of the run, and at the end. Default: null."""

@@ -183,13 +183,19 @@ class StructureNumerics(SceneModel):
 
 
 class Contact(SceneModel):
-    """Contact of structures with each other, with themselves and with walls, by a penalty."""
+    """Contact of structures with each other, with themselves and with the walls under `boundaries`, by a penalty.
 
-    stiffness: PositiveReal = 1.0
-    """Penalty stiffness in units of the stiffer partner's Young's modulus [1]. Default: 1."""
+    Surfaces touch where their cells do: at one spacing between particle centres. Not there with periodic
+    axes and planes of symmetry.
+    """
+
+    stiffness: PositiveReal = 0.5
+    """Stiffness of the penalty [1], in units of a particle's cell of the stiffest material of the scene: under a
+    pressure p surfaces go p / (stiffness E) spacings into each other. Up to about 1 it does not shorten the step.
+    Default: 0.5."""
 
     friction: NonNegativeReal = 0.0
-    """Coefficient of Coulomb friction [1]. Default: 0."""
+    """Coefficient of Coulomb friction, of rest and motion [1]. Default: 0."""
 
     own_surface: Flag = True
     """Whether a structure touches itself. Default: true."""

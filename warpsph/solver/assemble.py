@@ -101,8 +101,7 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
     walls = None
     if layout.walls:
         mirror = _mirrored_walls(scene, boundaries, assembly, search)
-        moved = _by_index(motions, sets)
-        walls = WallModel(assembly, lists, moved, len(sets), surface, fluid.react, mirror)
+        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, fluid.react, mirror)
     symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
     return Parts(assembly, search, fluid, walls, symmetry, *_reordered(assembly, search, fluid, walls))
 

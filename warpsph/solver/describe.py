@@ -44,11 +44,11 @@ def _fields(parts: Parts) -> list[dict[str, Any]]:
 
 
 def _passes(parts: Parts) -> list[str]:
-    mirror = ["mirror"] if parts.symmetry else []
-    passes = ["choose step", "begin step", *mirror, *parts.fluid.passes, "survey"]
-    if mirror:
+    fluid, walls = parts.fluid.passes, parts.walls
+    passes = ["choose step", "begin step", *fluid, "survey"]
+    if parts.symmetry:
+        passes.insert(passes.index("accelerate"), "mirror")
         passes.insert(passes.index("kick and drift") + 1, "mirror")
-    walls = parts.walls
     if walls is None:
         return passes
     names = {"dynamic": "wall pressure", "modified_dynamic": "mirror points of walls"}

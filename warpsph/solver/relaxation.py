@@ -56,12 +56,12 @@ class RelaxationStepper(StructureStepper):
         ramp = min((self._made + SUB_STEPS) / RAMP_STEPS, 1.0) if self._model.has_time_laws else 1.0
         dt = self.stable_step
         self._laws.write(self.time + ramp * (at - self.time), 0.0)
-        self._relax(SUB_STEPS, dt)
-        if self.failed or dt * self._cfl > self.stable_step:
+        count = self._relax(SUB_STEPS, dt)
+        if self.failed or self.is_unstable(dt):
             self.return_to_kept()
             self.find_forces_again()
-            self._relax_with_care()
-        self._made += SUB_STEPS
+            count = self._relax_with_care()
+        self._made += count
         if self._model.has_time_laws and self._made <= RAMP_STEPS + SUB_STEPS:
             self._slowest = math.inf  # what has changed so far came from the loads in part
         self._estimate_frequency(before["displacement"], before["acceleration"])
@@ -69,23 +69,29 @@ class RelaxationStepper(StructureStepper):
             self.time, self._made, self._slowest = at, 0, math.inf
         elif self._made >= self._solution.max_steps:
             raise NotConverged(self._complaint(at))
-        return StepReport(dt, "relaxation", SUB_STEPS)
+        return StepReport(dt, "relaxation", count)
 
-    def _relax(self, steps: int, dt: float) -> None:
-        """Make damped steps of a size [s] at standing loads, then look at the state."""
+    def _relax(self, steps: int, dt: float) -> int:
+        """Make damped steps of a size [s] at standing loads, then look at the state; return how many.
+
+        They are fewer where the lists of contact would not do for all.
+        """
         self._set_clock(dt, 2.0 * min(self._slowest, self.frequency))
+        steps = self.allowed(dt, steps)
         for _ in range(steps):
-            self._model.drift()
-            self._model.strain()
-            self._model.accelerate()
+            self.move()
+        before = self.extremes["speed"]
         self.survey()
+        self.listed(before, dt, steps)
+        return steps
 
-    def _relax_with_care(self) -> None:
-        """As many steps with a look after each, as far as the state does not fail."""
-        for _ in range(SUB_STEPS):
+    def _relax_with_care(self) -> int:
+        """As many steps with a look after each, as far as the state does not fail; return how many."""
+        for made in range(SUB_STEPS):
             self._relax(1, self.stable_step)
             if self.failed:
-                return
+                return made + 1
+        return SUB_STEPS
 
     def save(self) -> dict[str, Any]:
         return super().save() | {"slowest": self._slowest, "made": self._made}

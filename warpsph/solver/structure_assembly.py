@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
 from typing import Any
@@ -29,7 +29,7 @@ from warpsph.physics.structure import (
 from warpsph.sampling import SampledSet
 from warpsph.sampling.clamps import onto_surface
 from warpsph.sampling.initial_state import initial_field
-from warpsph.sampling.kinematics import RigidMotion, rigid_motion
+from warpsph.sampling.kinematics import RigidMotion, rigid_motion, rigid_motions
 from warpsph.sampling.loads import inside, specific_load
 from warpsph.sampling.scene_lattices import lattices_of
 from warpsph.sampling.walls import period_of
@@ -37,6 +37,7 @@ from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.schema import Scene
 from warpsph.scene.structures import Load
 from warpsph.scene.types import AXES
+from warpsph.solver.contact_assembly import ContactParts, assemble_contact
 
 
 @dataclass(frozen=True)
@@ -72,7 +73,10 @@ class HeldRegion:
 
 @dataclass(frozen=True)
 class StructureParts:
-    """Structures, assembled. `factors` are the time laws of the loads, expressions in t, in their order."""
+    """Structures, assembled. `factors` are the time laws of the loads, expressions in t, in their order.
+
+    `wall_motions` are those of the walls that structures may touch, by name.
+    """
 
     model: StructureModel
     bodies: tuple[Body, ...]
@@ -80,6 +84,8 @@ class StructureParts:
     factors: tuple[str, ...]
     bonds: Bonds
     mass: np.ndarray
+    contact: ContactParts | None
+    wall_motions: Mapping[str, RigidMotion]
 
 
 def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> StructureParts:
@@ -92,17 +98,20 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     density = np.concatenate([np.full(b.count, scene.structures[b.name].material.density) for b in bodies])
     mass = density * volume
     loads = list(_loads(scene, bodies))
+    wall_motions = rigid_motions(scene) if scene.contact else {}
     options = StructureOptions(
         arithmetic=arithmetic,
         moving_clamps=any(clamp.motion for clamp in clamps),
         loads=len(loads),
         damped=any(s.damping > 0.0 for s in scene.structures.values()) or is_static(scene),
         contact=scene.contact is not None,
+        moving_walls=bool(wall_motions),
         thin=bool(bonds.thin.any()),
     )
     ranges = _law_ranges(scene, bodies)
     blocks = sum(one.blocks for one in ranges)
     moving = sum(clamp.motion is not None for clamp in clamps)
+    motions = moving + len(wall_motions)
     device = launcher.device
     model = StructureModel(
         launcher,
@@ -111,10 +120,16 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         scene.gravity,
         _reference(scene, arithmetic, bodies, bonds, volume, clamps, [load for _, load in loads], device),
         allocate_state(arithmetic, len(volume), device),
-        allocate_scratch(options, len(volume), blocks, moving, device),
+        allocate_scratch(options, len(volume), blocks, motions, device),
     )
     _fill_state(scene, bodies, clamps, model)
-    return StructureParts(model, bodies, clamps, tuple(spec.factor for spec, _ in loads), bonds, mass)
+    contact = None
+    if scene.contact is not None:
+        columns = {name: moving + k for k, name in enumerate(wall_motions)}
+        ordered = [body.sampled for body in bodies]
+        contact = assemble_contact(scene, sets, ordered, mass, columns, model, bond_radius(scene), launcher)
+    factors = tuple(spec.factor for spec, _ in loads)
+    return StructureParts(model, bodies, clamps, factors, bonds, mass, contact, wall_motions)
 
 
 def is_static(scene: Scene) -> bool:

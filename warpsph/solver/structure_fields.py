@@ -2,18 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence, Set
 
 import numpy as np
 
 from warpsph.frame import SetFrame
 from warpsph.particles.state import host_view
 from warpsph.sampling import SampledSet
+from warpsph.sampling.kinematics import rigid_motions
 from warpsph.scene.schema import Scene
 from warpsph.solver.structure_assembly import StructureParts
 
 USUAL_FIELDS = ("position", "velocity", "mass", "displacement")
-WALL_FIELDS = frozenset({"position", "velocity", "volume", "id"})
 
 
 class StructureFields:
@@ -33,7 +33,7 @@ class StructureFields:
             "mass": lambda: parts.mass,
             "strain_energy": lambda: self._energy(0),
             "hourglass_energy": lambda: self._energy(1),
-            "contact_energy": lambda: np.zeros_like(parts.mass),
+            "contact_energy": self._contact_energy,
             "work": lambda: self._state("work"),
             "dissipated": lambda: self._state("dissipated"),
             "volume": lambda: host_view(self._model.reference.volume).astype(np.float64),
@@ -43,36 +43,44 @@ class StructureFields:
             "green_lagrange_strain": lambda: green_lagrange(self._gradient()),
             "volume_ratio": lambda: np.linalg.det(np.eye(scene.dimension) + self._gradient()),
         }
+        self._motions = rigid_motions(scene)
+        self._touched = {patch.name: patch for patch in parts.contact.walls} if parts.contact else {}
 
     @property
     def names(self) -> frozenset[str]:
         """Fields that there are."""
-        return frozenset(self._makers) | {"id"}
+        return frozenset(self._makers) | {"id"} | self._contact_fields
 
     def frame_sets(self, sampled: Sequence[SampledSet], fields: Sequence[str] | None) -> tuple[SetFrame, ...]:
         """All sets in the order of the scene; raises KeyError if there is no such field."""
         wanted = {"position", *(USUAL_FIELDS if fields is None else fields)} - {"id"}
-        unknown = sorted(wanted - set(self._makers))
+        unknown = sorted(wanted - self.names)
         if unknown:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(sorted(self.names))}")
         self._model.observe()
-        columns = {name: self._makers[name]() for name in wanted}
+        columns = {name: self._makers[name]() for name in wanted - self._contact_fields}
         sets, first_id = [], 0
         for one in sampled:
             ids = np.arange(first_id, first_id + len(one.position))
             first_id += len(one.position)
-            own = self._wall_columns(one) if one.kind == "boundary" else self._body_columns(one.name, columns)
+            own = (
+                self._wall_columns(one, wanted)
+                if one.kind == "boundary"
+                else self._body_columns(one.name, columns)
+            )
             kept = {name: values for name, values in own.items() if name in wanted}
             sets.append(SetFrame(one.name, one.kind, kept | {"id": ids}))
         return tuple(sets)
 
     def energies(self) -> dict[str, float]:
-        """Strain and hourglass energy of the present state, work done on the structures and energy dissipated [J]."""
+        """Strain, hourglass and contact energy of the present state, work done on the structures, dissipation [J]."""
         self._model.observe()
         strain, hourglass = host_view(self._model.scratch.energies).sum(axis=0)
+        touching = {"contact": float(self._contact_energy().sum())} if self._parts.contact else {}
         return {
             "strain": float(strain),
             "hourglass": float(hourglass),
+            **touching,
             "work": float(self._state("work").sum()),
             "dissipated": float(self._state("dissipated").sum()),
         }
@@ -81,18 +89,39 @@ class StructureFields:
         body = next(body for body in self._parts.bodies if body.name == name)
         return {field: np.array(values[body.range]) for field, values in columns.items()}
 
-    def _wall_columns(self, wall: SampledSet) -> dict[str, np.ndarray]:
-        return {
-            "position": wall.position,
-            "velocity": wall.velocity,
-            "volume": np.full(len(wall.position), wall.volume),
+    def _wall_columns(self, wall: SampledSet, wanted: Set[str]) -> dict[str, np.ndarray]:
+        position, velocity = wall.position, wall.velocity
+        if wall.name in self._motions:
+            pose = self._motions[wall.name](self._now())
+            position, velocity = pose.position_of(wall.position), pose.velocity_of(wall.position)
+        own = {
+            "position": position,
+            "velocity": velocity,
+            "volume": np.full(len(position), wall.volume),
         }
+        return own | ({"force": self._wall_force(wall)} if "force" in wanted else {})
+
+    def _wall_force(self, wall: SampledSet) -> np.ndarray:
+        """Force of contact on the particles of a wall (n, dim) [N]."""
+        assert self._parts.contact is not None
+        force, patch = np.zeros_like(wall.position), self._touched[wall.name]
+        force[patch.particles] = self._parts.contact.model.wall_force()[patch.range]
+        return force
+
+    @property
+    def _contact_fields(self) -> frozenset[str]:
+        """Fields of walls that are there with contact."""
+        return frozenset({"force"}) if self._parts.contact else frozenset()
 
     def _state(self, name: str) -> np.ndarray:
         return host_view(getattr(self._model.state, name))
 
     def _energy(self, column: int) -> np.ndarray:
         return host_view(self._model.scratch.energies)[:, column]
+
+    def _contact_energy(self) -> np.ndarray:
+        contact = self._parts.contact
+        return contact.model.energy() if contact else np.zeros_like(self._parts.mass)
 
     def _host_reference(self) -> np.ndarray:
         return host_view(self._model.reference.position)

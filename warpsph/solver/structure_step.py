@@ -17,12 +17,14 @@ from warpsph_kernels.structure_survey import FAULTS, FLATTENING, SPEED, STIFFENI
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import SUB_STEPS, arrays_in
 from warpsph.scene.schema import Scene
+from warpsph.solver.contact_step import ContactStepper
 from warpsph.solver.stability import largest_frequency
 from warpsph.solver.structure_assembly import StructureParts
 from warpsph.solver.system import StepReport
 from warpsph.solver.time_laws import TimeLaws
 
 STIFFNESS_GRADE = 1.1
+"""Ratio of two stiffnesses between which the step does not tell a difference."""
 SHORTEST = 1000.0
 """By how much a step may be shortened where the state has changed faster than was foreseen."""
 
@@ -32,6 +34,7 @@ class StructureStepper:
 
     def __init__(self, scene: Scene, parts: StructureParts) -> None:
         self._model = parts.model
+        self._contact = ContactStepper(parts.contact) if parts.contact else None
         self._cfl = scene.numerics.structure.cfl
         self._max_step = scene.time.max_step or math.inf
         self._laws = TimeLaws(parts)
@@ -52,6 +55,8 @@ class StructureStepper:
         """Bring stresses, forces and extremes to the time of the displacement."""
         self._set_clock(0.0)
         self._model.strain()
+        if self._contact:
+            self._contact.start()
         self._model.accelerate()
         self.survey()
 
@@ -64,13 +69,16 @@ class StructureStepper:
     def step(self) -> StepReport:
         """Make a few steps of one size; if they were too long after all, shorter ones to the same time."""
         self.keep_state()
-        dt, count, limit = self.choose_step()
-        end = self.target if limit == "frame" else self.time + count * dt
+        dt, planned, limit = self.choose_step()
         self.begin(dt)
+        count = self.allowed(dt, planned)
+        limit = limit if count == planned else "contact"
+        end = self.target if limit == "frame" else self.time + count * dt
         for _ in range(count):
             self.sub_step()
+        before = self.extremes["speed"]
         self.survey()
-        if self.failed or dt * self._cfl > self.stable_step:
+        if self.failed or self.is_unstable(dt) or not self.listed(before, dt, count):
             self.return_to_kept()
             count = self.step_with_care(end, dt / SHORTEST)
         else:
@@ -85,21 +93,40 @@ class StructureStepper:
         self.find_forces_again()
         count = 0
         while self.time < end and not self.failed:
-            dt = min(self.stable_step, end - self.time)
-            self.stuck = dt < shortest and dt < end - self.time
+            left = math.ceil((end - self.time) / self.stable_step * (1.0 - 1e-9))
+            dt = (end - self.time) / max(left, 1)
+            self.stuck = left > 1 and dt < shortest
             self.begin(dt)
+            self.allowed(dt, 1)
             self.sub_step()
+            before = self.extremes["speed"]
             self.survey()
-            self.time = end if dt == end - self.time else self.time + dt
+            self.listed(before, dt, 1)
+            self.time = end if left <= 1 else self.time + dt
             count += 1
         return count
 
+    def allowed(self, dt: float, count: int) -> int:
+        """How many of `count` steps, begun already, the lists of contact will do for; makes new ones if need be."""
+        return self._contact.allow(self.extremes["speed"], dt, count) if self._contact else count
+
+    def listed(self, before: float, dt: float, count: int) -> bool:
+        """Whether the lists of contact were complete in the steps made, from the largest speed before [m/s] and now."""
+        speed = max(before, self.extremes["speed"])
+        return self._contact is None or self._contact.note(speed, dt, count)
+
     def sub_step(self) -> None:
         """Advance by one step of the size that was begun with."""
+        self.move()
+        self._model.tick()
+
+    def move(self) -> None:
+        """Advance by one step; time laws stand."""
         self._model.drift()
         self._model.strain()
+        if self._contact:
+            self._contact.push()
         self._model.accelerate()
-        self._model.tick()
 
     def choose_step(self) -> tuple[float, int, str]:
         """Size [s], number and limit of the next steps: as the stiffness of the present state allows.
@@ -124,7 +151,14 @@ class StructureStepper:
         """
         stiffening = max(float(self._extremes[STIFFENING]), 1.0)
         grade = math.ceil(math.log(stiffening) / math.log(STIFFNESS_GRADE) - 1e-3)
-        return self._cfl * 2.0 / (self.frequency * STIFFNESS_GRADE ** (0.5 * grade))
+        square = self.frequency**2 * STIFFNESS_GRADE**grade
+        if self._contact:
+            square = self._contact.raised(square)
+        return self._cfl * 2.0 / math.sqrt(square)
+
+    def is_unstable(self, dt: float) -> bool:
+        """Whether a step [s] is beyond the stability limit of the present state."""
+        return dt * self.frequency * math.sqrt(max(self._extremes[STIFFENING], 1.0)) > 2.0
 
     def begin(self, dt: float, damping: float = 0.0) -> None:
         """Set step size and damping, and the values of time laws for the coming steps."""
@@ -141,11 +175,13 @@ class StructureStepper:
 
     @property
     def extremes(self) -> Mapping[str, float]:
-        """Largest speed [m/s], largest stiffening [1] and least J, negated [1]."""
+        """Largest speed [m/s], largest stiffening [1] and least J, negated [1]; with contact the penetration [m]."""
+        touching = {"penetration": self._contact.depth} if self._contact else {}
         return {
             "speed": math.sqrt(self._extremes[SPEED]),
             "stiffening": float(self._extremes[STIFFENING]),
             "flattening": float(self._extremes[FLATTENING]),
+            **touching,
         }
 
     @property
@@ -166,11 +202,15 @@ class StructureStepper:
     def keep_state(self) -> None:
         """Remember the present state, to return to it if the coming steps fail."""
         self._before = {name: np.array(host_view(a)) for name, a in arrays_in(self._model.state).items()}
+        if self._contact:
+            self._contact.keep()
 
     def return_to_kept(self) -> None:
         """Go back to the state before the last steps."""
         for name, array in arrays_in(self._model.state).items():
             write_array(array, self._before[name])
+        if self._contact:
+            self._contact.return_to_kept()
 
     def _set_clock(self, dt: float, damping: float = 0.0) -> None:
         values = np.zeros(3)
@@ -179,10 +219,13 @@ class StructureStepper:
 
     def save(self) -> dict[str, Any]:
         """The stepper's own part of a checkpoint."""
-        return {"time": self.time, "frequency": self.frequency}
+        own = {"time": self.time, "frequency": self.frequency}
+        return own | self._contact.save() if self._contact else own
 
     def load(self, saved: Mapping[str, Any]) -> None:
         """Go on from what `save` returned; the state's arrays have been restored."""
         self.time, self.frequency = float(saved["time"]), float(saved["frequency"])
         self._laws.write(self.time, 0.0)
         self.find_forces_again()
+        if self._contact:
+            self._contact.load(saved)

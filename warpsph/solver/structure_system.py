@@ -12,6 +12,7 @@ import warp as wp
 from warpsph.frame import SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import host_view, write_array
+from warpsph.physics.contact import UNITS as CONTACT_UNITS
 from warpsph.physics.structure import UNITS, arrays_in
 from warpsph.sampling import SampledSet
 from warpsph.scene.schema import Scene
@@ -27,6 +28,8 @@ TYPICAL_RATE = 2.0e6
 """Particle-steps a second of one CPU core, for a first estimate."""
 NOTABLE_HOURGLASS = 0.25
 """Share of the hourglass energy in the elastic energy from which the penalty carries the result."""
+NOTABLE_PENETRATION = 0.5
+"""Depth in spacings from which contact is no longer a small disturbance of the geometry."""
 
 
 class StructureSystem:
@@ -56,8 +59,8 @@ class StructureSystem:
 
     @property
     def list_builds(self) -> int:
-        """The bonds of structures are made once."""
-        return 1
+        """The bonds of structures are made once, the lists of contact whenever something has moved far enough."""
+        return 1 + (self.parts.contact.model.builds if self.parts.contact else 0)
 
     @property
     def sound_speed(self) -> float:
@@ -103,7 +106,7 @@ class StructureSystem:
         return sum_up(self.time, bodies, np.asarray(self._scene.gravity), self._fields.energies())
 
     def warnings(self, largest: Mapping[str, float]) -> list[str]:
-        warnings = self._thin_warnings()
+        warnings = [*self._thin_warnings(), *self._penetration_warnings(largest.get("penetration", 0.0))]
         energies = self._fields.energies()
         elastic = energies["strain"] + energies["hourglass"]
         if elastic > 0.0 and energies["hourglass"] > NOTABLE_HOURGLASS * elastic:
@@ -113,6 +116,14 @@ class StructureSystem:
                 "use a smaller spacing"
             )
         return warnings
+
+    def _penetration_warnings(self, depth: float) -> list[str]:
+        if depth <= NOTABLE_PENETRATION * self._scene.spacing:
+            return []
+        return [
+            f"bodies in contact went {depth / self._scene.spacing:.2g} spacings into each other: "
+            "use a larger contact.stiffness or a smaller spacing"
+        ]
 
     def _thin_warnings(self) -> list[str]:
         bonds, what = self.parts.bonds, "plane" if self._scene.dimension == 3 else "line"
@@ -131,16 +142,20 @@ class StructureSystem:
         model = self.parts.model
         groups = (model.reference, model.state, model.scratch)
         arrays = {name: array for group in groups for name, array in arrays_in(group).items()}
+        contact = self.parts.contact
+        if contact:
+            arrays |= contact.model.named_arrays()
         sizes = {name: int(array.capacity) for name, array in arrays.items()}
+        units = UNITS | CONTACT_UNITS
         dt = self.stepper.stable_step
         steps = math.ceil(self._scene.time.end / dt)
         return {
             "sets": [{"name": name, "kind": kind, "particles": count} for name, kind, count in self.sets],
             "particles": self.particle_count,
             "passes": self._passes(),
-            "pairs": ["structure - structure (bonds at rest)"],
-            "fields": [{"name": name, "unit": UNITS[name], "bytes": size} for name, size in sizes.items()],
-            "list_bytes": sizes["neighbours"] + sizes["bonds"],
+            "pairs": ["structure - structure (bonds at rest)", *self._touching_pairs()],
+            "fields": [{"name": name, "unit": units[name], "bytes": size} for name, size in sizes.items()],
+            "list_bytes": sizes["neighbours"] + sizes["bonds"] + sizes.get("contact_rows", 0),
             "neighbours": float(self.parts.bonds.count.mean()),
             "bytes_per_particle": sum(sizes.values()) / max(self.particle_count, 1),
             "sound_speed_m_s": self.sound_speed,
@@ -151,7 +166,21 @@ class StructureSystem:
 
     def _passes(self) -> list[str]:
         timed = ["structure time laws"] if self.parts.model.has_time_laws else []
-        return ["structure drift", "structure stress", "structure forces", *timed, "structure survey"]
+        touching = ["contact places", "contact sensing", "contact forces"] if self.parts.contact else []
+        return [
+            "structure drift",
+            "structure stress",
+            *touching,
+            "structure forces",
+            *timed,
+            "structure survey",
+        ]
+
+    def _touching_pairs(self) -> list[str]:
+        contact = self.parts.contact
+        if contact is None:
+            return []
+        return ["structure - structure (contact)", *(["structure - wall (contact)"] if contact.walls else [])]
 
     def save(self) -> dict[str, Any]:
         arrays = {name: np.array(host_view(array)) for name, array in self.arrays.items()}

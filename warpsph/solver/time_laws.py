@@ -1,4 +1,4 @@
-"""Values of time laws for the coming steps: factors of loads, poses of moving clamps."""
+"""Values of time laws for the coming steps: factors of loads, poses of moving clamps and walls."""
 
 from __future__ import annotations
 
@@ -18,7 +18,9 @@ class TimeLaws:
     def __init__(self, parts: StructureParts) -> None:
         self._model = parts.model
         self._factors = parts.factors
-        self._motions = [clamp.motion for clamp in parts.clamps if clamp.motion is not None]
+        self._motions = [c.motion for c in parts.clamps if c.motion is not None] + [
+            *parts.wall_motions.values()
+        ]
         self._load_factor = np.array(host_view(self._model.scratch.load_factor))
         self._prescriptions = np.array(host_view(self._model.scratch.prescriptions))
 

@@ -65,8 +65,8 @@ def domain_problems(scene: Scene) -> Iterator[Problem]:
 _MIRRORED: Mapping[str, frozenset[str]] = {
     "density": frozenset({"continuity"}),
     "density_diffusion": frozenset({"none", "molteni_colagrossi", "fourtakas"}),
-    "viscosity": frozenset({"none", "artificial", "laminar", "custom"}),
-    "kernel_gradient": frozenset({"plain", "finite_particle"}),
+    "viscosity": frozenset({"none", "artificial", "laminar"}),
+    "kernel_gradient": frozenset({"plain"}),
     "particle_order": frozenset({"none"}),
     "wall": frozenset({"dynamic", "extrapolated", "repulsive"}),
 }

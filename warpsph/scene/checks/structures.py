@@ -51,6 +51,9 @@ def _company_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
         yield Problem.at("structures", message, "fluids, or structures")
     if scene.contact is not None and not names.structures:
         yield Problem.at("contact", "there is no structure to be touched", "contact beside structures")
+    if scene.contact is not None and (scene.domain.periodic or scene.domain.symmetry):
+        message = "contact does not reach over periodic faces and planes of symmetry yet"
+        yield Problem.at("contact", message, "no contact, or neither periodic axes nor symmetry")
 
 
 def _plane_problems(structure: Structure, dimension: int, key: str) -> Iterator[Problem]:

@@ -1,0 +1,93 @@
+"""Contact within the step of structures: forces, and lists that stay complete between two looks of the host."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from warpsph.physics.contact import MEMORY
+from warpsph.solver.contact_assembly import ContactParts
+
+MARGIN = 1.5
+"""Growth of the largest speed that is allowed for between two looks."""
+
+
+class ContactStepper:
+    """Keeps the lists complete: no particle moves farther than half the skin from where it was listed."""
+
+    def __init__(self, parts: ContactParts) -> None:
+        self._parts = parts
+        self._model = parts.model
+        self._moved = 0.0
+        self._kept = self._model.memory()
+
+    def raised(self, square: float) -> float:
+        """The largest squared frequency of structures [1/s^2] with the springs of contact at their surfaces.
+
+        A chain of masses m and springs k_s has omega^2 = 4 k_s / m. A spring K from its end to a wall, which is what
+        the spring between two chains is to each in their antisymmetric modes, does not raise that up to K = 2 k_s; a
+        stiffer one adds a mode at the end, of omega^2 = K^2 / (m (K - k_s)).
+        """
+        end, inner = self._parts.stiffness, 0.25 * square
+        return square if end <= 2.0 * inner else end**2 / (end - inner)
+
+    @property
+    def depth(self) -> float:
+        """Deepest penetration at the last look [m]."""
+        return self._model.depth()
+
+    def start(self) -> None:
+        """Make lists of the present state, and find its forces."""
+        self._list()
+        self._model.push()
+
+    def push(self) -> None:
+        """Find the forces of contact."""
+        self._model.push()
+
+    def allow(self, speed: float, dt: float, count: int) -> int:
+        """Make new lists if need be; return how many of `count` steps of `dt` [s] they will surely do for."""
+        stride = MARGIN * max(speed, self._parts.wall_speed) * dt
+        if self._moved + stride * count > self._half_skin:
+            self._list()
+            count = min(count, max(int(self._half_skin / stride), 1))
+        return count
+
+    def note(self, speed: float, dt: float, count: int) -> bool:
+        """Note that steps have been made, at most so fast [m/s]; return whether the lists were complete all along."""
+        way = max(speed, self._parts.wall_speed) * dt * count
+        complete = self._moved + way <= self._half_skin or count == 1
+        if complete:
+            self._moved += way
+        return complete
+
+    def keep(self) -> None:
+        """Remember what `return_to_kept` brings back."""
+        self._kept = self._model.memory()
+
+    def return_to_kept(self) -> None:
+        """Take back what friction has done since."""
+        self._model.remember(self._kept)
+
+    def save(self) -> dict[str, Any]:
+        """What brings the same lists and slips back."""
+        lists = {"contact_listed": self._model.listed, "contact_moved": self._moved}
+        return lists | {f"contact_{name}": values for name, values in self._model.memory().items()}
+
+    def load(self, saved: Mapping[str, Any]) -> None:
+        """Go on from what `save` returned; the state of the structures has been restored."""
+        self._model.list_pairs(np.asarray(saved["contact_listed"]))
+        self._moved = float(saved["contact_moved"])
+        self._model.sense()
+        self._model.remember({name: np.asarray(saved[f"contact_{name}"]) for name in MEMORY})
+
+    @property
+    def _half_skin(self) -> float:
+        return 0.5 * self._model.skin
+
+    def _list(self) -> None:
+        self._model.place()
+        self._model.list_pairs()
+        self._moved = 0.0
