@@ -46,7 +46,7 @@ def test_shipped_scenes_survive_the_round_trip(name: str) -> None:
     assert scene_from_yaml(scene.to_yaml(), scene.base_directory) == scene
 
 
-@settings(max_examples=30, deadline=None)
+@settings(max_examples=30)
 @given(st.text(), positive, st.tuples(finite, finite), st.dictionaries(names, probes, max_size=3))
 def test_any_text_and_number_survives_the_round_trip(
     description: str, density: float, gravity: tuple[float, float], probes: dict[str, object]

@@ -15,7 +15,7 @@ from warpsph.scene.document import decode
 LINES = DAM_BREAK.splitlines(keepends=True)
 DATA = YAML(typ="safe", pure=True).load(DAM_BREAK)
 
-mutations = settings(max_examples=25, deadline=None)
+mutations = settings(max_examples=25)
 scalars = st.one_of(
     st.none(),
     st.booleans(),
