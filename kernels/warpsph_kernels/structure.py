@@ -13,6 +13,10 @@ The energy whose derivative the forces are is
 A clamped particle is rigid: it has no strain and no energy, H = Q = 0 (its L is zero). Bonds with rigid particles
 stand behind the others in a row; the penalty acts in them from the deformable side only.
 
+Particles that do not lie on a lattice have a gradient vector d_ab for each bond instead of w_ab L_a X_ab, made so that
+a uniform stress exerts no force inside; then f_a = sum_b (P_a d_ab - V_b/V_a P_b d_ba) + the part of the penalty, where
+the fit stays the weighted one.
+
 Since F_a is the weighted least-squares fit of x_ab = F_a X_ab with the same weights, the fit does not change the second
 part to first order, and both parts together give the force per reference volume
 
@@ -50,6 +54,8 @@ class StructureOptions:
     """Whether some wall that is touched moves by a prescribed law."""
     thin: bool
     """Whether the neighbours of some particle lie in a plane or on a line."""
+    scattered: bool = False
+    """Whether particles do not lie on a lattice, so that every bond brings the gradients of its two ends."""
 
     @property
     def module(self) -> str:
@@ -123,12 +129,8 @@ def make_thin_completion(arithmetic: Arithmetic) -> Any:
 def make_stress_kernel(options: StructureOptions, law: str, plane_stress: bool) -> Any:
     """Return the kernel `strain_and_stress` of one constitutive law."""
     arithmetic = options.arithmetic
-    dim, record, point, matrix = (
-        arithmetic.dimension,
-        arithmetic.record,
-        arithmetic.point,
-        make_matrix(arithmetic),
-    )
+    dim, vector, record = arithmetic.dimension, arithmetic.vector, arithmetic.record
+    point, matrix = arithmetic.point, make_matrix(arithmetic)
     material = make_material_struct(arithmetic)
     _, unpack = make_packing(arithmetic)
     narrow = make_narrow(arithmetic)
@@ -146,31 +148,44 @@ def make_stress_kernel(options: StructureOptions, law: str, plane_stress: bool) 
         ends: wp.array2d(dtype=wp.int32),
         correction: wp.array(dtype=matrix),
         thin_normal: wp.array(dtype=record),
+        own_gradient: wp.array2d(dtype=vector),
         displacement: wp.array(dtype=point),
         gradient: wp.array(dtype=matrix),
         traction: wp.array(dtype=matrix),
+        stress: wp.array(dtype=matrix),
     ):
         """One particle: H_a = sum_b V_b (u_b - u_a) (x) L_a grad0 W_ab, then Q_a = P_a L_a - penalty H_a.
 
-        `gradient` receives H [1], `traction` Q [Pa m^2]; differences of displacements are taken in double.
+        `gradient` receives H [1], `traction` Q [Pa m^2]; differences of displacements are taken in double. Of scattered
+        particles `stress` receives P_a, and Q has no part of it.
         """
         i = first + offset + wp.tid()
         u_a = displacement[i]
         moment = matrix()
+        H = matrix()
         for n in range(ends[i, 1]):
             bond = bonds[i, n]
             u_ab = narrow(u_a, displacement[neighbours[i, n]])
             moment -= wp.outer(bond[dim] * u_ab, unpack(bond))
+            if wp.static(options.scattered):
+                H -= wp.outer(u_ab, own_gradient[i, n])
         L = correction[i]
-        H = moment * L
+        fitted = moment * L
+        if wp.static(not options.scattered):
+            H = fitted
         p = materials[structure[i]]
+        P = matrix()
         if wp.static(options.thin):
             thin = thin_normal[i]
             P, _psi, _P_33 = stress_of(complete(H, unpack(thin)), p)
-            traction[i] = thin[dim] * P * L - p.penalty * H
+            P = thin[dim] * P
         else:
             P, _psi, _P_33 = stress_of(H, p)
-            traction[i] = P * L - p.penalty * H
+        if wp.static(options.scattered):
+            stress[i] = P
+            traction[i] = -p.penalty * fitted
+        else:
+            traction[i] = P * L - p.penalty * fitted
         gradient[i] = H
 
     return strain_and_stress
@@ -280,6 +295,9 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         bonds: wp.array2d(dtype=record),
         ends: wp.array2d(dtype=wp.int32),
         traction: wp.array(dtype=matrix),
+        stress: wp.array(dtype=matrix),
+        own_gradient: wp.array2d(dtype=vector),
+        other_gradient: wp.array2d(dtype=vector),
         displacement: wp.array(dtype=point),
         volume: wp.array(dtype=real),
         free: wp.array(dtype=vector),
@@ -313,6 +331,10 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
             )
         for n in range(end, ends[i, 1]):
             total += pair_force(bonds[i, n], Q_a, u_a, neighbours[i, n], p.penalty, traction, displacement)
+        if wp.static(options.scattered):
+            P_a = stress[i]
+            for n in range(ends[i, 1]):
+                total += P_a * own_gradient[i, n] + stress[neighbours[i, n]] * other_gradient[i, n]
         if wp.static(options.contact):
             total += contact_force[i] / volume[i]
         a = widen(total / p.density + gravity)

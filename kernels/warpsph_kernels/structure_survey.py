@@ -153,6 +153,7 @@ def make_observation_kernel(options: StructureOptions, law: str, plane_stress: b
         thin_normal: wp.array(dtype=record),
         displacement: wp.array(dtype=point),
         gradient: wp.array(dtype=matrix),
+        traction: wp.array(dtype=matrix),
         energies: wp.array2d(dtype=wp.float64),
         cauchy: wp.array(dtype=tensor),
     ):
@@ -164,11 +165,14 @@ def make_observation_kernel(options: StructureOptions, law: str, plane_stress: b
         p = materials[structure[i]]
         H = gradient[i]
         u_a = displacement[i]
+        fitted = H
+        if wp.static(options.scattered):
+            fitted = -traction[i] / wp.max(p.penalty, real(1.0e-30))
         misfit = wp.float64(0.0)
         if wp.trace(correction[i]) > real(0.0):  # a rigid particle has none
             for n in range(ends[i, 1]):
                 bond = bonds[i, n]
-                rest = narrow(u_a, displacement[neighbours[i, n]]) - H * unpack(bond)
+                rest = narrow(u_a, displacement[neighbours[i, n]]) - fitted * unpack(bond)
                 misfit -= wp.float64(bond[dim] * wp.dot(rest, rest))
         share = real(1.0)
         if wp.static(options.thin):

@@ -50,11 +50,13 @@ def test_an_affine_displacement_has_its_gradient_everywhere(dim, precision, jitt
 
 @pytest.mark.parametrize("dim", [2, 3])
 @pytest.mark.parametrize("precision", ["single", "double"])
-def test_a_uniform_stress_exerts_no_force_inside(dim, precision):
-    one = system(dim, precision)
+@pytest.mark.parametrize("jitter", [False, True])
+def test_a_uniform_stress_exerts_no_force_inside(dim, precision, jitter):
+    """On scattered particles as on a lattice; inside are the particles that are inside of the lattice."""
+    one = system(dim, precision, jitter)
     gradient = np.random.default_rng(0).uniform(-0.3, 0.3, (dim, dim))
     deform(one, reference_of(one) @ gradient.T)
-    inner = inside_of(one)
+    inner = inside_of(system(dim, precision))
     assert inner.any()
     face = 0.1 ** (dim - 1)  # area of a particle's side: the surface feels the stress times it
     assert np.abs(forces(one)[inner]).max() < 200 * ROUNDING[precision] * YOUNG * face

@@ -64,8 +64,8 @@ def make_bonds(
         periods: length of each periodic axis [m], zero along the others.
     """
     position = np.concatenate(bodies)
-    first, second = _pairs(bodies, rigid, radius, np.asarray(periods))
-    vector = _nearest_image(position[first] - position[second], np.asarray(periods))
+    first, second = pairs_within(bodies, rigid, radius, np.asarray(periods))
+    vector = nearest_image(position[first] - position[second], np.asarray(periods))
     weight = volume[second] * weights(np.linalg.norm(vector, axis=1))
     correction, normal, seen = _corrections(rigid, first, vector, weight)
     count = np.bincount(first, minlength=len(position))
@@ -83,7 +83,7 @@ def make_bonds(
     return Bonds(rows(second), rows(vector), rows(weight), ends, correction, normal, seen)
 
 
-def _pairs(
+def pairs_within(
     bodies: Sequence[np.ndarray], rigid: np.ndarray, radius: float, periods: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
     """Both directions of every pair within the radius, sorted by the first particle; bonds with rigid ones last."""
@@ -101,7 +101,8 @@ def _pairs(
     return both[:, 0], both[:, 1]
 
 
-def _nearest_image(vector: np.ndarray, periods: np.ndarray) -> np.ndarray:
+def nearest_image(vector: np.ndarray, periods: np.ndarray) -> np.ndarray:
+    """Separations (n, dim) [m] to the nearest image; periods (dim,) [m] are zero along axes that are not periodic."""
     lengths = np.where(periods > 0.0, periods, np.inf)
     return vector - np.where(np.isfinite(lengths), lengths, 0.0) * np.round(vector / lengths)
 

@@ -39,6 +39,9 @@ UNITS = {
     "ends": "1",
     "correction": "1",
     "thin_normal": "1",
+    "own_gradient": "1/m",
+    "other_gradient": "1/m",
+    "stress": "Pa",
     "free": "1",
     "clamp": "1",
     "load": "m/s^2",
@@ -82,7 +85,8 @@ class StructureReference:
     particles; correction: (n,) L_a [1]; thin_normal: (n,) records
     (normal of coplanar neighbours, 1 or 0 where even a plane is not seen); free: (n,) vectors, 1 where a component of
     the displacement is free and 0 where a clamp prescribes it; clamp: (n,) index of the moving clamp or -1;
-    load: (loads, n) force per mass of each load before its time law [m/s^2].
+    load: (loads, n) force per mass of each load before its time law [m/s^2]; own_gradient, other_gradient: (n, m) of
+    scattered particles, see `warpsph.particles.consistency`.
     """
 
     position: wp.array
@@ -97,6 +101,8 @@ class StructureReference:
     free: wp.array
     clamp: wp.array
     load: wp.array
+    own_gradient: wp.array
+    other_gradient: wp.array
 
 
 @dataclass(frozen=True)
@@ -116,10 +122,11 @@ class StructureState:
 
 @dataclass(frozen=True)
 class StructureScratch:
-    """What is computed anew: H [1] and Q [Pa] (see the kernels), contact forces [N], extremes, time laws, output."""
+    """What is computed anew: H [1], Q and P [Pa] (see the kernels), contact forces [N], extremes, time laws, output."""
 
     gradient: wp.array
     traction: wp.array
+    stress: wp.array
     contact_force: wp.array
     extremes: wp.array
     load_factor: wp.array
@@ -154,6 +161,7 @@ def allocate_scratch(
     return StructureScratch(
         gradient=zeros(count, matrix),
         traction=zeros(count, matrix),
+        stress=zeros(count if options.scattered else 1, matrix),
         contact_force=zeros(count if options.contact else 1, arithmetic.vector),
         extremes=zeros((max(blocks, 1), EXTREMES), wp.float64),
         load_factor=zeros((SUB_STEPS + 1, max(options.loads, 1)), wp.float64),
@@ -259,6 +267,9 @@ class StructureModel:
             r.bonds,
             r.ends,
             t.traction,
+            t.stress,
+            r.own_gradient,
+            r.other_gradient,
             s.displacement,
             r.volume,
             r.free,
@@ -288,9 +299,11 @@ class StructureModel:
             r.ends,
             r.correction,
             r.thin_normal,
+            r.own_gradient,
             s.displacement,
             t.gradient,
             t.traction,
+            t.stress,
         )
 
     def _bind_surveys(self) -> list[Pass]:
@@ -320,6 +333,7 @@ class StructureModel:
             r.thin_normal,
             s.displacement,
             t.gradient,
+            t.traction,
             t.energies,
             t.cauchy,
         )

@@ -16,6 +16,7 @@ from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.structure import StructureOptions
 
 from warpsph.particles.bonds import Bonds, make_bonds
+from warpsph.particles.consistency import Gradients, consistent_gradients, is_scattered
 from warpsph.particles.launch import Launcher
 from warpsph.particles.rows import row_array
 from warpsph.particles.state import write_array
@@ -94,7 +95,9 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     bodies = _bodies(scene, sets)
     volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
     clamps = tuple(_clamps(scene, bodies))
-    bonds = _bonds(scene, bodies, volume, _rigid(scene, clamps, len(volume)), launcher)
+    rigid = _rigid(scene, clamps, len(volume))
+    bonds = _bonds(scene, bodies, volume, rigid, launcher)
+    gradients = _gradients(scene, bodies, volume, rigid, bonds)
     density = np.concatenate([np.full(b.count, scene.structures[b.name].material.density) for b in bodies])
     mass = density * volume
     loads = list(_loads(scene, bodies))
@@ -107,6 +110,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         contact=scene.contact is not None,
         moving_walls=bool(wall_motions),
         thin=bool(bonds.thin.any()),
+        scattered=gradients is not None,
     )
     ranges = _law_ranges(scene, bodies)
     blocks = sum(one.blocks for one in ranges)
@@ -118,7 +122,9 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         options,
         ranges,
         scene.gravity,
-        _reference(scene, arithmetic, bodies, bonds, volume, clamps, [load for _, load in loads], device),
+        _reference(
+            scene, arithmetic, bodies, bonds, gradients, volume, clamps, [load for _, load in loads], device
+        ),
         allocate_state(arithmetic, len(volume), device),
         allocate_scratch(options, len(volume), blocks, motions, device),
     )
@@ -192,11 +198,27 @@ def _bonds(
         launcher.bind("bonds", kernel, wp.float64(norm), wp.float64(1.0 / h), lengths, found).run(len(length))
         return found.numpy()
 
-    periods = np.zeros(dim)
+    positions = [body.position for body in bodies]
+    return make_bonds(positions, volume, rigid, bond_radius(scene), _periods(scene), weights)
+
+
+def _gradients(
+    scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray, bonds: Bonds
+) -> Gradients | None:
+    """Gradients of the bonds where some body does not lie on a lattice, else None."""
+    radius, spacing = bond_radius(scene), scene.spacing
+    if not any(is_scattered(bonds, body.range, radius, spacing) for body in bodies):
+        return None
+    positions = [body.position for body in bodies]
+    return consistent_gradients(positions, volume, rigid, bonds, spacing, _periods(scene))
+
+
+def _periods(scene: Scene) -> list[float]:
+    """Length of each periodic axis [m], zero along the others."""
+    periods = [0.0] * scene.dimension
     for axis, (low, high) in period_of(scene).items():
         periods[axis] = high - low
-    positions = [body.position for body in bodies]
-    return make_bonds(positions, volume, rigid, bond_radius(scene), periods.tolist(), weights)
+    return periods
 
 
 def _clamps(scene: Scene, bodies: Sequence[Body]) -> Iterator[HeldRegion]:
@@ -229,6 +251,7 @@ def _reference(
     arithmetic: Arithmetic,
     bodies: Sequence[Body],
     bonds: Bonds,
+    gradients: Gradients | None,
     volume: np.ndarray,
     clamps: Sequence[HeldRegion],
     loads: Sequence[tuple[Body, np.ndarray]],
@@ -241,6 +264,7 @@ def _reference(
         table[row, body.range] = specific
     materials = [_material(scene, arithmetic, body.name) for body in bodies]
     owner = np.repeat(np.arange(len(bodies)), [body.count for body in bodies])
+    nothing = np.zeros((1, 1, dim))
     bond_records = np.concatenate([bonds.vector, bonds.weight[..., None]], axis=2)
 
     def array(values: np.ndarray, dtype: Any) -> wp.array:
@@ -259,6 +283,8 @@ def _reference(
         free=array(free, arithmetic.vector),
         clamp=array(clamp_index, wp.int32),
         load=array(table, arithmetic.vector),
+        own_gradient=row_array(gradients.own if gradients else nothing, arithmetic.vector, device),
+        other_gradient=row_array(gradients.other if gradients else nothing, arithmetic.vector, device),
     )
 
 

@@ -24,7 +24,7 @@ from warpsph.solver.structure_fields import StructureFields
 from warpsph.solver.structure_step import StructureStepper
 from warpsph.solver.system import StepReport
 
-TYPICAL_RATE = 2.0e6
+TYPICAL_RATE = 5.0e6
 """Particle-steps a second of one CPU core, for a first estimate."""
 NOTABLE_HOURGLASS = 0.25
 """Share of the hourglass energy in the elastic energy from which the penalty carries the result."""
