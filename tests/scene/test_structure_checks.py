@@ -127,3 +127,10 @@ def test_all_mistakes_are_told_at_once() -> None:
     text = text.replace("factor: sin(t)", "factor: sin(x)").replace("[0.0, -9.81]", "[0.0, 0.0, -9.81]")
     keys = [problem.key for problem in problems_of(text)]
     assert keys == ["gravity", "structures.beam.material.law", f"{ROOT}.axes.1", f"{TIP}.factor"]
+
+
+def test_a_mistake_in_the_only_body_hides_no_other() -> None:
+    text = BEAM.replace("poisson_ratio: 0.3", "poisson_ratio: 0.5")
+    text += "probes:\n  tip: {type: displacement, structure: beem, at: [1.0, 0.15]}\n"
+    keys = [problem.key for problem in problems_of(text)]
+    assert keys == ["structures.beam.material.poisson_ratio", "probes.tip.structure"]

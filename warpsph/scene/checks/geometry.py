@@ -36,6 +36,8 @@ def geometry_problems(scene: Scene) -> Iterator[Problem]:
     yield from _period_problems(scene, boxes)
     yield from _symmetry_problems(scene, boxes)
     walls = {f"boundaries.{name}.shape": bounding_box(wall.shape) for name, wall in scene.boundaries.items()}
+    if not boxes:
+        return  # every body is refused for reasons of its own
     for key, spacing in _spacings(scene):
         yield from _thin_problems(key, spacing, boxes | walls)
         yield from _number_problems(key, spacing, boxes)
