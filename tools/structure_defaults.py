@@ -9,20 +9,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-import tempfile
-import time
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-import warp as wp
-
-from warpsph import load_scene
-from warpsph.solver.run import run_scene
+from trials import run_trial, table, write_table
 
 PAGE = Path(__file__).parents[1] / "docs/structure_defaults.md"
-BEGIN, END = "<!-- table:begin -->", "<!-- table:end -->"
 THICKNESS = 0.02
 SMOOTHING = (0.7, 0.8, 0.9, 1.0, 1.3)
 HOURGLASS = (0.1, 0.3, 0.4, 0.5, 0.7)
@@ -57,32 +51,21 @@ class Trial:
     seconds: float
 
 
-def run_trial(layers: int, smoothing: float, hourglass: float) -> Trial:
+def swing(layers: int, smoothing: float, hourglass: float) -> Trial:
     """Two swings of the bar with so many particles through its thickness, on one thread."""
-    scene = load_scene(
-        "turek_hron_csm3",
-        [
-            f"spacing={THICKNESS / layers!r}",
-            f"numerics.structure.h_over_dp={smoothing}",
-            f"numerics.structure.hourglass={hourglass}",
-            "time.end=2.0",
-            "output.usd=false",
-        ],
+    choice = [f"numerics.structure.h_over_dp={smoothing}", f"numerics.structure.hourglass={hourglass}"]
+    summary, seconds = run_trial(
+        "turek_hron_csm3", [f"spacing={THICKNESS / layers!r}", "time.end=2.0", *choice]
     )
-    with tempfile.TemporaryDirectory() as directory:
-        begun = time.process_time()
-        summary = run_scene(scene, directory, device="cpu", threads=1)
-        seconds = time.process_time() - begun
     rows = {row["quantity"]: row for row in summary["references"]}
     energies = summary["ledger"]["end"]["energies"]
-    elastic = energies["strain"] + energies["hourglass"]
     return Trial(
         layers,
         smoothing,
         hourglass,
         _signed(rows["first_minimum"]),
         _signed(rows["period"]),
-        energies["hourglass"] / elastic,
+        energies["hourglass"] / (energies["strain"] + energies["hourglass"]),
         summary["neighbours"],
         summary["particles"],
         summary["steps"]["count"],
@@ -102,28 +85,24 @@ def trials(layers: Iterable[int]) -> Iterator[Trial]:
             for hourglass in HOURGLASS:
                 on_line = smoothing == DEFAULT[0] or hourglass == DEFAULT[1]
                 if on_line or count < counts[-1]:
-                    yield run_trial(count, smoothing, hourglass)
+                    yield swing(count, smoothing, hourglass)
 
 
-def table(rows: Iterable[Trial]) -> Iterator[str]:
-    """The rows as a table in Markdown, the default in bold."""
-    yield f"| {' | '.join(COLUMNS)} |"
-    yield f"| {' | '.join(['---'] * len(COLUMNS))} |"
-    for r in rows:
-        mark = "**" if (r.smoothing, r.hourglass) == DEFAULT else ""
-        cells = (
-            f"{mark}{r.layers}{mark}",
-            f"{mark}{r.smoothing:g}{mark}",
-            f"{mark}{r.hourglass:g}{mark}",
-            f"{100.0 * r.minimum:+.2f} %",
-            f"{100.0 * r.period:+.2f} %",
-            f"{100.0 * r.share:.1f} %",
-            f"{r.neighbours:.1f}",
-            str(r.steps),
-            f"{r.seconds:.1f}",
-            f"{r.steps * r.particles / r.seconds / 1e6:.1f}",
-        )
-        yield f"| {' | '.join(cells)} |"
+def cells(r: Trial) -> list[str]:
+    """A row of the table, the default in bold."""
+    mark = "**" if (r.smoothing, r.hourglass) == DEFAULT else ""
+    return [
+        f"{mark}{r.layers}{mark}",
+        f"{mark}{r.smoothing:g}{mark}",
+        f"{mark}{r.hourglass:g}{mark}",
+        f"{100.0 * r.minimum:+.2f} %",
+        f"{100.0 * r.period:+.2f} %",
+        f"{100.0 * r.share:.1f} %",
+        f"{r.neighbours:.1f}",
+        str(r.steps),
+        f"{r.seconds:.1f}",
+        f"{r.steps * r.particles / r.seconds / 1e6:.1f}",
+    ]
 
 
 def main() -> None:
@@ -132,14 +111,11 @@ def main() -> None:
     parser.add_argument(
         "--layers", type=int, nargs="+", default=[4, 8, 16], help="particles through the thickness"
     )
-    wp.config.quiet = True
     rows = []
     for trial in trials(parser.parse_args().layers):
         print(trial, file=sys.stderr, flush=True)
         rows.append(trial)
-    before, rest = PAGE.read_text().split(BEGIN)
-    _, after = rest.split(END)
-    PAGE.write_text("\n".join([before + BEGIN, *table(rows), END + after]))
+    write_table(PAGE, table(COLUMNS, [cells(row) for row in rows]))
 
 
 if __name__ == "__main__":
