@@ -138,7 +138,9 @@ def _error(error: float | None, row: Row) -> str:
     if error is None:
         return "-"
     unit = row.get("error_unit")
-    return f"{error:.2g} {unit}" if unit else f"{100.0 * error:.2g} %"
+    if unit:
+        return f"{error:.2g} {unit}"
+    return f"{100.0 * error:.2g} %" if error < 1.0 else f"{100.0 * error:.0f} %"
 
 
 def _line(cells: Iterable[str]) -> str:
