@@ -19,12 +19,13 @@ from warpsph_kernels.materials import LAWS, LawFactory
 from warpsph_kernels.pair_terms import VISCOSITIES
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS, SmoothingKernel
 from warpsph_kernels.state import STATES, EquationOfState, difference_stiffening
-from warpsph_kernels.tabulate import make_kernel_table, make_state_table
+from warpsph_kernels.tabulate import make_state_table
 
 from warpsph.laws.materials import MATERIAL_LAWS, MaterialLaw
 from warpsph.laws.smoothing import SMOOTHING_LAWS, SmoothingLaw
 from warpsph.laws.states import STATE_LAWS, StateLaw
 from warpsph.laws.viscosities import VISCOSITY_LAWS, ViscosityLaw
+from warpsph.particles.tabulation import fill_table, tabulated
 
 Factory = Callable[[Arithmetic], Any]
 _HOST = Arithmetic(3, "double")
@@ -48,7 +49,7 @@ def register_smoothing_kernel(name: str, support: float, make: Factory) -> None:
     _require_new(name, SMOOTHING_KERNELS)
     build = cache(lambda arithmetic: tuple(_function(part) for part in make(arithmetic)))
     q = np.linspace(0.0, support, _NODES)
-    shape, slope = (_values(make_kernel_table(part), q) for part in build(_HOST))
+    shape, slope = (tabulated(part, q) for part in build(_HOST))
     _require_slope(q, shape, slope)
     # Simpson's rule, exact for cubic pieces that end at a node.
     weights = np.where(np.arange(_NODES) % 2, 4.0, 2.0)
@@ -165,7 +166,7 @@ def _require_slope(q: np.ndarray, shape: np.ndarray, slope: np.ndarray) -> None:
 def _state_table(name: str, state: Any, numbers: Sequence[float]) -> tuple[np.ndarray, np.ndarray]:
     """R(e), and the integral of R / (1 + e)^2 from 0 over R, at the strains of the table."""
     given = _HOST.parameters(*numbers, *(0.0 for _ in range(PARAMETERS - len(numbers))))
-    ratio = _values(make_state_table(state, _HOST), _STRAINS, given)
+    ratio = fill_table(make_state_table(state, _HOST), _STRAINS, given)
     middle = _NODES // 2
     slope = (ratio[middle + 1] - ratio[middle - 1]) / (_STRAINS[middle + 1] - _STRAINS[middle - 1])
     if abs(ratio[middle]) > 1e-9 or abs(slope - 1.0) > _TOLERANCE or np.diff(ratio).min() < -1e-12:
@@ -179,10 +180,3 @@ def _state_table(name: str, state: Any, numbers: Sequence[float]) -> tuple[np.nd
     work -= work[middle]
     safe = np.where(np.abs(ratio) > 1e-9, ratio, 1.0)
     return ratio, np.where(np.abs(ratio) > 1e-9, work / safe, 0.5 * _STRAINS)
-
-
-def _values(table: Any, argument: np.ndarray, *more: Any) -> np.ndarray:
-    value = wp.zeros(len(argument), dtype=wp.float64, device="cpu")
-    x = wp.array(argument, dtype=wp.float64, device="cpu")
-    wp.launch(table, len(argument), inputs=[x, *more, value], device="cpu")
-    return np.array(value.numpy())

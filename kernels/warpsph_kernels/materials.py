@@ -49,19 +49,13 @@ def make_material_struct(arithmetic: Arithmetic) -> Any:
 
 
 @cache
-def make_matrix(arithmetic: Arithmetic) -> Any:
-    """Return the type of a square matrix of the pair loops."""
-    return wp.types.matrix((arithmetic.dimension, arithmetic.dimension), arithmetic.real)
-
-
-@cache
 def make_kinematics(arithmetic: Arithmetic) -> tuple[Any, Any]:
     """Return the device functions `volume_change(H)` = det(I + H) - 1 and `inverse_transpose(H)` = (I + H)^-T.
 
     The first is a sum without the 1, so that small volume changes keep their digits.
     """
     real, dim = arithmetic.real, arithmetic.dimension
-    matrix = make_matrix(arithmetic)
+    matrix = arithmetic.matrix
 
     def volume_change(H: matrix):
         change = wp.trace(H) + wp.determinant(H)
@@ -109,7 +103,7 @@ def make_energy_parts(arithmetic: Arithmetic) -> tuple[Any, Any]:
     `excess(H)` = tr(F F^T - I) - 2 (J - 1), of second order in H; `log1p_rest(x)` = x - log(1 + x), of second order
     in x: a series in s = x / (2 + x) where x is small, because log(1 + x) = 2 artanh(s).
     """
-    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, arithmetic.matrix
     log1p = make_log1p(arithmetic)
     terms = 5 if arithmetic.precision == "single" else 12
 
@@ -139,7 +133,7 @@ def make_st_venant_kirchhoff(options: LawOptions) -> Any:
     Plane stress: lambda becomes 2 lambda mu / (lambda + 2 mu).
     """
     arithmetic, plane_stress = options.arithmetic, options.plane_stress
-    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, arithmetic.matrix
     material = make_material_struct(arithmetic)
 
     def st_venant_kirchhoff(H: matrix, p: material):
@@ -161,7 +155,7 @@ def make_st_venant_kirchhoff(options: LawOptions) -> Any:
 def make_linear_elastic(options: LawOptions) -> Any:
     """P = lambda tr(e) I + 2 mu e with e = (H + H^T)/2: for small displacements, as a check of the others."""
     arithmetic, plane_stress = options.arithmetic, options.plane_stress
-    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, arithmetic.matrix
     material = make_material_struct(arithmetic)
 
     def linear_elastic(H: matrix, p: material):
@@ -187,7 +181,7 @@ def make_neo_hookean(options: LawOptions) -> Any:
     the thickness from P_33 t = mu (t^2 - 1) + lambda ln(J t) = 0, with the J of the plane, by Newton's method in ln t.
     """
     arithmetic, plane_stress = options.arithmetic, options.plane_stress
-    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, arithmetic.matrix
     material = make_material_struct(arithmetic)
     volume_change, inverse_transpose = make_kinematics(arithmetic)
     log1p, expm1 = make_log1p(arithmetic), make_expm1(arithmetic)
@@ -225,7 +219,7 @@ def make_split_neo_hookean(options: LawOptions) -> Any:
     (2013); P = [mu J^(-2/3) dev(F F^T) + K (J - 1) J I] F^-T. Plane strain and three dimensions.
     """
     arithmetic = options.arithmetic
-    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, arithmetic.matrix
     material = make_material_struct(arithmetic)
     volume_change, inverse_transpose = make_kinematics(arithmetic)
     log1p, expm1 = make_log1p(arithmetic), make_expm1(arithmetic)

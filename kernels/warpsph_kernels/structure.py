@@ -31,7 +31,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_widen
-from warpsph_kernels.materials import LAWS, LawOptions, make_material_struct, make_matrix
+from warpsph_kernels.materials import LAWS, LawOptions, make_material_struct
 
 STEP, DAMPING, SUB_STEP = range(3)
 """Entries of the clock of structures, all float64: step [s], damping of every structure [1/s], and how many steps have
@@ -105,7 +105,7 @@ def make_thin_completion(arithmetic: Arithmetic) -> Any:
     deformed plane, cof(F) n / |cof(F) n|: no stretch and no shear across, whatever the rotation.
     """
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
-    matrix = make_matrix(arithmetic)
+    matrix = arithmetic.matrix
 
     def complete(H: matrix, normal: vector):
         F = wp.identity(n=wp.static(dim), dtype=real) + H
@@ -130,7 +130,7 @@ def make_stress_kernel(options: StructureOptions, law: str, plane_stress: bool) 
     """Return the kernel `strain_and_stress` of one constitutive law."""
     arithmetic = options.arithmetic
     dim, vector, record = arithmetic.dimension, arithmetic.vector, arithmetic.record
-    point, matrix = arithmetic.point, make_matrix(arithmetic)
+    point, matrix = arithmetic.point, arithmetic.matrix
     material = make_material_struct(arithmetic)
     _, unpack = make_packing(arithmetic)
     narrow = make_narrow(arithmetic)
@@ -196,7 +196,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
     """Return the kernels that move structures, whatever their laws."""
     arithmetic = options.arithmetic
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
-    record, point, matrix = arithmetic.record, arithmetic.point, make_matrix(arithmetic)
+    record, point, matrix = arithmetic.record, arithmetic.point, arithmetic.matrix
     material = make_material_struct(arithmetic)
     prescription = make_prescription_struct(arithmetic)
     _, unpack = make_packing(arithmetic)

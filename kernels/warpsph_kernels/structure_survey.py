@@ -11,7 +11,6 @@ from warpsph_kernels.materials import (
     LawOptions,
     make_kinematics,
     make_material_struct,
-    make_matrix,
 )
 from warpsph_kernels.structure import StructureOptions, make_thin_completion
 
@@ -30,7 +29,7 @@ four digits, and the law is linear over it to three."""
 def make_principal_frame(options: StructureOptions) -> Any:
     """Return the device function whose columns are the principal directions of F^T F, for a given H."""
     arithmetic = options.arithmetic
-    real, dim, matrix = arithmetic.real, arithmetic.dimension, make_matrix(arithmetic)
+    real, dim, matrix = arithmetic.real, arithmetic.dimension, arithmetic.matrix
 
     def principal_frame(H: matrix):
         strain = H + wp.transpose(H) + wp.transpose(H) * H
@@ -50,7 +49,7 @@ def make_survey_kernel(options: StructureOptions, law: str, plane_stress: bool) 
     """Return the kernel `survey` of the structures with one constitutive law."""
     arithmetic = options.arithmetic
     dim, real, vector, point = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.point
-    matrix, material = make_matrix(arithmetic), make_material_struct(arithmetic)
+    matrix, material = arithmetic.matrix, make_material_struct(arithmetic)
     stress_of = LAWS[law](LawOptions(arithmetic, plane_stress))
     record = arithmetic.record
     _, unpack = make_packing(arithmetic)
@@ -131,7 +130,7 @@ def make_observation_kernel(options: StructureOptions, law: str, plane_stress: b
     """Return the kernel `observe` of the structures with one constitutive law."""
     arithmetic = options.arithmetic
     dim, real, point = arithmetic.dimension, arithmetic.real, arithmetic.point
-    record, matrix, material = arithmetic.record, make_matrix(arithmetic), make_material_struct(arithmetic)
+    record, matrix, material = arithmetic.record, arithmetic.matrix, make_material_struct(arithmetic)
     tensor = wp.types.matrix((3, 3), real)
     _, unpack = make_packing(arithmetic)
     narrow = make_narrow(arithmetic)

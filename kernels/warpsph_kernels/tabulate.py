@@ -1,5 +1,6 @@
 """Values of a formula at many arguments, in double precision: what the host needs of device code."""
 
+from functools import cache
 from typing import Any
 
 import warp as wp
@@ -7,6 +8,7 @@ import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 
 
+@cache
 def make_kernel_table(function: Any) -> Any:
     """Return the kernel (q, value) that evaluates a part of a smoothing kernel."""
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.materials import LAWS, LawOptions, make_material_struct, make_matrix
+from warpsph_kernels.materials import LAWS, LawOptions, make_material_struct
 
 YOUNG, NU = 2.0e5, 0.3
 LAME, MU = YOUNG * NU / ((1 + NU) * (1 - 2 * NU)), YOUNG / (2 * (1 + NU))
@@ -35,7 +35,7 @@ def evaluations(dim: int, precision: str):
 
 def evaluation(law: str, dim: int, plane_stress: bool, precision: str):
     arithmetic = Arithmetic(dim, precision)
-    real, matrix, material = arithmetic.real, make_matrix(arithmetic), make_material_struct(arithmetic)
+    real, matrix, material = arithmetic.real, arithmetic.matrix, make_material_struct(arithmetic)
     stress_of = LAWS[law](LawOptions(arithmetic, plane_stress))
 
     def evaluate(
@@ -57,7 +57,7 @@ def evaluation(law: str, dim: int, plane_stress: bool, precision: str):
 def respond(law, dim, plane_stress, gradients, precision="double"):
     """P (n, dim, dim) [Pa], psi (n,) [Pa] and P_33 (n,) [Pa] at displacement gradients (n, dim, dim)."""
     arithmetic = Arithmetic(dim, precision)
-    kernel, matrix = evaluations(dim, precision)[law, plane_stress], make_matrix(arithmetic)
+    kernel, matrix = evaluations(dim, precision)[law, plane_stress], arithmetic.matrix
     numbers = make_material_struct(arithmetic)()
     numbers.lame, numbers.shear_modulus, numbers.bulk_modulus = LAME, MU, BULK
     stress = wp.zeros(len(gradients), dtype=matrix, device="cpu")

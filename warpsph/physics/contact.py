@@ -12,6 +12,7 @@ import warp as wp
 from warpsph_kernels.contact import ContactOptions, make_contact_kernels, make_contact_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
+from warpsph.laws.smoothing import SMOOTHING_LAWS
 from warpsph.particles.launch import Launcher
 from warpsph.particles.rows import row_array
 from warpsph.particles.state import host_view, write_array
@@ -108,15 +109,14 @@ def penalty_law(
 
 def _flat_nearness(dimension: int) -> Callable[[float], float]:
     """c as a function of the distance [spacings] of a particle from a flat lattice row (2D) or layer (3D)."""
-    norm, support = WENDLAND_C2.norm(dimension, H_OVER_DP), WENDLAND_C2.support
-    reach = math.ceil(support * H_OVER_DP)
+    smoothing = SMOOTHING_LAWS["wendland_c2"]
+    reach = math.ceil(smoothing.support * H_OVER_DP)
     ticks = np.arange(-reach, reach + 1, dtype=float)
     along = np.stack(np.meshgrid(*[ticks] * (dimension - 1)), axis=-1).reshape(-1, dimension - 1)
 
     def nearness(distance: float) -> float:
         q = np.sqrt(distance**2 + (along**2).sum(axis=1)) / H_OVER_DP
-        near = np.maximum(1.0 - q / support, 0.0)
-        return float(norm * np.sum(near**4 * (2.0 * q + 1.0)))
+        return float(np.sum(smoothing.value(q, dimension))) / H_OVER_DP**dimension
 
     return nearness
 

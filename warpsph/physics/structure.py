@@ -8,7 +8,6 @@ from typing import Any
 
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.materials import make_matrix
 from warpsph_kernels.structure import (
     CLOCK_SIZE,
     StructureOptions,
@@ -155,7 +154,7 @@ def allocate_scratch(
     `motions` is the number of moving clamps and walls.
     """
     arithmetic = options.arithmetic
-    matrix, real = make_matrix(arithmetic), arithmetic.real
+    matrix, real = arithmetic.matrix, arithmetic.real
     zeros: Callable[..., wp.array] = lambda shape, dtype: wp.zeros(shape, dtype=dtype, device=device)  # noqa: E731
     prescription = make_prescription_struct(arithmetic)
     return StructureScratch(

@@ -10,8 +10,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.bonds import make_bond_weights
-from warpsph_kernels.materials import make_material_struct, make_matrix
+from warpsph_kernels.materials import make_material_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.structure import StructureOptions
 
@@ -20,6 +19,7 @@ from warpsph.particles.consistency import Gradients, consistent_gradients, is_sc
 from warpsph.particles.launch import Launcher
 from warpsph.particles.rows import row_array
 from warpsph.particles.state import write_array
+from warpsph.particles.tabulation import tabulated
 from warpsph.physics.structure import (
     LawRange,
     StructureModel,
@@ -96,7 +96,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
     clamps = tuple(_clamps(scene, bodies))
     rigid = _rigid(scene, clamps, len(volume))
-    bonds = _bonds(scene, bodies, volume, rigid, launcher)
+    bonds = _bonds(scene, bodies, volume, rigid)
     gradients = _gradients(scene, bodies, volume, rigid, bonds)
     density = np.concatenate([np.full(b.count, scene.structures[b.name].material.density) for b in bodies])
     mass = density * volume
@@ -184,19 +184,13 @@ def _law_ranges(scene: Scene, bodies: Sequence[Body]) -> list[LawRange]:
     return ranges
 
 
-def _bonds(
-    scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray, launcher: Launcher
-) -> Bonds:
-    dim, smoothing = scene.dimension, scene.numerics.kernel
+def _bonds(scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray) -> Bonds:
+    dim, smoothing = scene.dimension, SMOOTHING_KERNELS[scene.numerics.kernel]
     h = scene.numerics.structure.h_over_dp * scene.spacing
-    norm = SMOOTHING_KERNELS[smoothing].norm(dim, h) / h**2
+    _, slope = smoothing.make(Arithmetic(dim, "double"))
 
     def weights(length: np.ndarray) -> np.ndarray:
-        lengths = wp.array(length, dtype=wp.float64, device=launcher.device)
-        found = wp.zeros_like(lengths)
-        kernel = make_bond_weights(dim, smoothing)
-        launcher.bind("bonds", kernel, wp.float64(norm), wp.float64(1.0 / h), lengths, found).run(len(length))
-        return found.numpy()
+        return smoothing.norm(dim, h) / h**2 * tabulated(slope, length / h)
 
     positions = [body.position for body in bodies]
     return make_bonds(positions, volume, rigid, bond_radius(scene), _periods(scene), weights)
@@ -278,7 +272,7 @@ def _reference(
         neighbours=row_array(bonds.neighbour, wp.int32, device),
         bonds=row_array(bond_records, arithmetic.record, device),
         ends=wp.array(np.ascontiguousarray(bonds.ends), dtype=wp.int32, ndim=2, device=device),
-        correction=array(bonds.correction, make_matrix(arithmetic)),
+        correction=array(bonds.correction, arithmetic.matrix),
         thin_normal=array(np.column_stack([bonds.normal, bonds.seen]), arithmetic.record),
         free=array(free, arithmetic.vector),
         clamp=array(clamp_index, wp.int32),

@@ -14,6 +14,8 @@ from warpsph.scene.schema import Scene
 from warpsph.solver.structure_assembly import StructureParts
 
 USUAL_FIELDS = ("position", "velocity", "mass", "displacement")
+OBSERVED = frozenset({"strain_energy", "hourglass_energy", "cauchy_stress", "von_mises"})
+"""Fields that take a pass over the bonds."""
 
 
 class StructureFields:
@@ -57,7 +59,8 @@ class StructureFields:
         unknown = sorted(wanted - self.names)
         if unknown:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(sorted(self.names))}")
-        self._model.observe()
+        if wanted & OBSERVED:
+            self._model.observe()
         columns = {name: self._makers[name]() for name in wanted - self._contact_fields}
         sets, first_id = [], 0
         for one in sampled:
