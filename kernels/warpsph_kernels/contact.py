@@ -29,8 +29,9 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_widen
+from warpsph_kernels.pose import make_pose_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
-from warpsph_kernels.structure import STEP, SUB_STEP, make_prescription_struct
+from warpsph_kernels.structure import STEP, SUB_STEP
 
 WENDLAND_C2 = SMOOTHING_KERNELS["wendland_c2"]
 WALL = wp.constant(-1)
@@ -140,7 +141,7 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
     """Return the kernels of contact."""
     arithmetic = options.arithmetic
     dim, real, vector, point = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.point
-    contact, prescription = make_contact_struct(arithmetic), make_prescription_struct(arithmetic)
+    contact, pose_type = make_contact_struct(arithmetic), make_pose_struct(arithmetic)
     shape, slope = WENDLAND_C2.make(arithmetic)
     pair_force, stick = make_pair_force(options), make_stick(options)
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
@@ -209,7 +210,7 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         clock: wp.array(dtype=wp.float64),
         owner: wp.array(dtype=wp.int32),
         rest: wp.array(dtype=point),
-        prescriptions: wp.array2d(dtype=prescription),
+        prescriptions: wp.array2d(dtype=pose_type),
         displacement: wp.array(dtype=point),
         structure_velocity: wp.array(dtype=point),
         position: wp.array(dtype=point),

@@ -13,8 +13,8 @@ from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.cells import make_cell_functions, make_grid_struct
 from warpsph_kernels.fluid import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.pose import make_pose_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
-from warpsph_kernels.wall_motion import make_pose_struct
 
 SMALLEST_DETERMINANT = 1.0e-3
 """Of the matrix of moments, one inside the fluid; below it the mean by the kernel's weights has to do."""

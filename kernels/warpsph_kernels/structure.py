@@ -32,6 +32,7 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_widen
 from warpsph_kernels.materials import LAWS, LawOptions, make_material_struct
+from warpsph_kernels.pose import make_pose_struct
 
 STEP, DAMPING, SUB_STEP = range(3)
 """Entries of the clock of structures, all float64: step [s], damping of every structure [1/s], and how many steps have
@@ -74,27 +75,6 @@ class StructureKernels(NamedTuple):
     drift: Any
     accelerate: Any
     tick: Any
-
-
-@cache
-def make_prescription_struct(arithmetic: Arithmetic) -> Any:
-    """Return the struct of a clamp at one time: x = rotation X + shift and its first two time derivatives."""
-    dim, point = arithmetic.dimension, arithmetic.point
-    matrix = wp.types.matrix((dim, dim), wp.float64)
-
-    class Prescription:
-        pass
-
-    names = (
-        "rotation",
-        "rotation_rate",
-        "rotation_acceleration",
-        "shift",
-        "shift_rate",
-        "shift_acceleration",
-    )
-    Prescription.__annotations__ = {n: matrix if n.startswith("rotation") else point for n in names}
-    return wp.struct(Prescription)
 
 
 @cache
@@ -198,7 +178,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
     record, point, matrix = arithmetic.record, arithmetic.point, arithmetic.matrix
     material = make_material_struct(arithmetic)
-    prescription = make_prescription_struct(arithmetic)
+    pose_type = make_pose_struct(arithmetic)
     _, unpack = make_packing(arithmetic)
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
     tracks_work = options.loads > 0 or options.moving_clamps
@@ -226,7 +206,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         return bond[dim] * ((Q_a + traction[b]) * unpack(bond) + penalty * u_ab)
 
     @wp.func
-    def clamp_power(pose: prescription, X: point, mask: vector, a: point):
+    def clamp_power(pose: pose_type, X: point, mask: vector, a: point):
         """Power per mass of a clamp [W/kg]: what it adds to the acceleration a of the other forces, times v."""
         added = pose.rotation_acceleration * X + pose.shift_acceleration - a
         return wp.dot(added, masked(mask, point(), pose.rotation_rate * X + pose.shift_rate))
@@ -240,7 +220,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         volume: wp.array(dtype=real),
         free: wp.array(dtype=vector),
         clamp: wp.array(dtype=wp.int32),
-        prescriptions: wp.array2d(dtype=prescription),
+        prescriptions: wp.array2d(dtype=pose_type),
         reference: wp.array(dtype=point),
         load: wp.array2d(dtype=vector),
         load_factor: wp.array2d(dtype=wp.float64),
@@ -302,7 +282,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         volume: wp.array(dtype=real),
         free: wp.array(dtype=vector),
         clamp: wp.array(dtype=wp.int32),
-        prescriptions: wp.array2d(dtype=prescription),
+        prescriptions: wp.array2d(dtype=pose_type),
         reference: wp.array(dtype=point),
         load: wp.array2d(dtype=vector),
         load_factor: wp.array2d(dtype=wp.float64),

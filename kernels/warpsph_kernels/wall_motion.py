@@ -5,28 +5,9 @@ from typing import Any
 
 import warp as wp
 
-from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_widen
+from warpsph_kernels.arithmetic import make_narrow, make_packing, make_widen
 from warpsph_kernels.fluid import FluidOptions
-
-
-@cache
-def make_pose_struct(arithmetic: Arithmetic) -> Any:
-    """Return the struct of a motion x = A X + b at one time, with the first and second time derivatives of A and b."""
-    dim, point = arithmetic.dimension, arithmetic.point
-    matrix = wp.types.matrix((dim, dim), wp.float64)
-
-    class Pose:
-        pass
-
-    Pose.__annotations__ = {
-        "rotation": matrix,
-        "shift": point,
-        "rotation_rate": matrix,
-        "shift_rate": point,
-        "rotation_acceleration": matrix,
-        "shift_acceleration": point,
-    }
-    return wp.struct(Pose)
+from warpsph_kernels.pose import make_pose_struct
 
 
 @cache

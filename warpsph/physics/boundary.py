@@ -9,7 +9,8 @@ import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.boundary import make_wall_kernels
-from warpsph_kernels.wall_motion import make_move, make_pose_struct
+from warpsph_kernels.pose import make_pose_struct
+from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
 from warpsph.particles.launch import Pass
@@ -18,7 +19,6 @@ from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, Lists, WallSurface
 from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.sampling.kinematics import Pose, RigidMotion
-from warpsph.scene.placement import cross_matrix
 
 
 class WallModel:
@@ -234,18 +234,10 @@ class WallModel:
         )
 
     def _device_pose(self, pose: Pose | None) -> Any:
-        dim = self._assembly.options.arithmetic.dimension
+        at_rest = {"rotation": np.eye(self._assembly.options.arithmetic.dimension)}
         device_pose = self._pose_type()
-        if pose is None:
-            device_pose.rotation = np.eye(dim)
-            return device_pose
-        spin, growth = cross_matrix(pose.angular_velocity), cross_matrix(pose.angular_acceleration)
-        device_pose.rotation = pose.rotation
-        device_pose.shift = pose.translation
-        device_pose.rotation_rate = spin[:dim, :dim] @ pose.rotation
-        device_pose.shift_rate = pose.velocity
-        device_pose.rotation_acceleration = (growth + spin @ spin)[:dim, :dim] @ pose.rotation
-        device_pose.shift_acceleration = pose.acceleration
+        for name, value in (at_rest if pose is None else pose.derivatives()).items():
+            setattr(device_pose, name, value)
         return device_pose
 
 

@@ -8,10 +8,10 @@ from typing import Any
 
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.pose import make_pose_struct
 from warpsph_kernels.structure import (
     CLOCK_SIZE,
     StructureOptions,
-    make_prescription_struct,
     make_stress_kernel,
     make_structure_kernels,
 )
@@ -156,7 +156,6 @@ def allocate_scratch(
     arithmetic = options.arithmetic
     matrix, real = arithmetic.matrix, arithmetic.real
     zeros: Callable[..., wp.array] = lambda shape, dtype: wp.zeros(shape, dtype=dtype, device=device)  # noqa: E731
-    prescription = make_prescription_struct(arithmetic)
     return StructureScratch(
         gradient=zeros(count, matrix),
         traction=zeros(count, matrix),
@@ -164,7 +163,7 @@ def allocate_scratch(
         contact_force=zeros(count if options.contact else 1, arithmetic.vector),
         extremes=zeros((max(blocks, 1), EXTREMES), wp.float64),
         load_factor=zeros((SUB_STEPS + 1, max(options.loads, 1)), wp.float64),
-        prescriptions=zeros((SUB_STEPS + 1, max(motions, 1)), prescription),
+        prescriptions=zeros((SUB_STEPS + 1, max(motions, 1)), make_pose_struct(arithmetic)),
         energies=zeros((count, 2), wp.float64),
         cauchy=zeros(count, wp.types.matrix((3, 3), real)),
     )

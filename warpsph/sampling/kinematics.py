@@ -48,6 +48,22 @@ class Pose:
         centripetal = _cross(self.angular_velocity, _cross(self.angular_velocity, arm))
         return self.acceleration + _cross(self.angular_acceleration, arm) + centripetal
 
+    def derivatives(self) -> dict[str, np.ndarray]:
+        """A and b of x = A X + b with their first and second time derivatives, named as on the device.
+
+        dA/dt = [omega] A and d2A/dt2 = ([d(omega)/dt] + [omega] [omega]) A with the matrices of the cross products.
+        """
+        dim = len(self.translation)
+        spin, growth = cross_matrix(self.angular_velocity), cross_matrix(self.angular_acceleration)
+        return {
+            "rotation": self.rotation,
+            "shift": self.translation,
+            "rotation_rate": spin[:dim, :dim] @ self.rotation,
+            "shift_rate": self.velocity,
+            "rotation_acceleration": (growth + spin @ spin)[:dim, :dim] @ self.rotation,
+            "shift_acceleration": self.acceleration,
+        }
+
     def after(self, first: Pose) -> Pose:
         """This motion applied to a body that `first` has moved already (both in three dimensions).
 

@@ -6,9 +6,7 @@ import numpy as np
 
 from warpsph.particles.state import host_view
 from warpsph.physics.structure import SUB_STEPS
-from warpsph.sampling.kinematics import Pose
 from warpsph.scene.expressions import evaluate
-from warpsph.scene.placement import cross_matrix
 from warpsph.solver.structure_assembly import StructureParts
 
 
@@ -33,17 +31,9 @@ class TimeLaws:
             self._load_factor[:, column] = evaluate(factor, {"t": times})
         for column, motion in enumerate(self._motions):
             for row in range(1 if dt == 0.0 else len(times)):
-                self._write_pose(row, column, motion(float(times[row])))
+                for name, value in motion(float(times[row])).derivatives().items():
+                    self._prescriptions[name][row, column] = value
         if dt == 0.0 and self._motions:
             self._prescriptions[1:] = self._prescriptions[0]
         self._model.scratch.load_factor.assign(self._load_factor)
         self._model.scratch.prescriptions.assign(self._prescriptions)
-
-    def _write_pose(self, row: int, column: int, pose: Pose) -> None:
-        dim = len(pose.translation)
-        spin, growth = cross_matrix(pose.angular_velocity), cross_matrix(pose.angular_acceleration)
-        entry = self._prescriptions[row, column]
-        entry["rotation"], entry["shift"] = pose.rotation, pose.translation
-        entry["rotation_rate"] = spin[:dim, :dim] @ pose.rotation
-        entry["rotation_acceleration"] = (growth + spin @ spin)[:dim, :dim] @ pose.rotation
-        entry["shift_rate"], entry["shift_acceleration"] = pose.velocity, pose.acceleration
