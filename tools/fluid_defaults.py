@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from trials import run_trial, table, write_table
+from trials import run_trial, write_table
 
 from warpsph.scene.errors import SceneError
 from warpsph.solver.errors import SimulationDiverged
@@ -109,7 +109,7 @@ def main(scenes: Sequence[str]) -> None:
         for name, overrides in choices(scene):
             rows.append(row(scene, name, overrides))
             print(*rows[-1], sep=" | ", file=sys.stderr, flush=True)
-    write_table(PAGE, table(("scene", "choice", "errors", "steps", "CPU [s]"), rows))
+    write_table(PAGE, ("scene", "choice", "errors", "steps", "CPU [s]"), rows)
 
 
 if __name__ == "__main__":

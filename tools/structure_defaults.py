@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from trials import run_trial, table, write_table
+from trials import run_trial, write_table
 
 PAGE = Path(__file__).parents[1] / "docs/structure_defaults.md"
 THICKNESS = 0.02
@@ -115,7 +115,7 @@ def main() -> None:
     for trial in trials(parser.parse_args().layers):
         print(trial, file=sys.stderr, flush=True)
         rows.append(trial)
-    write_table(PAGE, table(COLUMNS, [cells(row) for row in rows]))
+    write_table(PAGE, COLUMNS, [cells(row) for row in rows])
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Runs of shipped scenes with some choice changed, and the tables that they fill."""
+"""Runs of shipped scenes with some choice changed, and the pages that their tables stand on."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import warp as wp
+from pages import rewrite, table
 
 from warpsph import load_scene
 from warpsph.solver.run import run_scene
@@ -26,17 +27,6 @@ def run_trial(scene: str, overrides: Sequence[str]) -> tuple[Mapping[str, Any], 
         return summary, time.process_time() - begun
 
 
-def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
-    """Lines of a table in Markdown."""
-    return [_line(columns), _line(["---"] * len(columns)), *(_line(row) for row in rows)]
-
-
-def write_table(page: Path, lines: Iterable[str]) -> None:
-    """Replace what stands between the marks of a page."""
-    before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-    _, after = rest.split(END)
-    page.write_text("\n".join([before + BEGIN, *lines, END + after]), encoding="utf-8")
-
-
-def _line(cells: Sequence[str]) -> str:
-    return f"| {' | '.join(cells)} |"
+def write_table(page: Path, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
+    """Put a table between the marks of a page."""
+    rewrite(page, BEGIN, END, "\n".join(table(columns, rows)))

@@ -16,6 +16,8 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+import pages
+
 ROOT = Path(__file__).resolve().parents[1]
 RECORD, PAGE, README = ROOT / "docs/validation.jsonl", ROOT / "docs/validation.md", ROOT / "README.md"
 BEGIN, END = "<!-- validation:begin -->", "<!-- validation:end -->"
@@ -47,26 +49,14 @@ def merged(old: Iterable[Row], new: Iterable[Row]) -> list[Row]:
 def table(rows: Iterable[Row]) -> str:
     """A Markdown table of all rows and, below it, where they were computed."""
     rows = list(rows)
-    lines = [_line(COLUMNS), _line(["---"] * len(COLUMNS)), *(_line(_cells(row)) for row in rows)]
-    return "\n".join([*lines, "", _machines(rows)])
+    return "\n".join([*pages.table(COLUMNS, map(_cells, rows)), "", _machines(rows)])
 
 
 def summary(rows: Iterable[Row]) -> str:
     """A Markdown table with a line a scene: its finest resolution, and each quantity that has a bound."""
     rows = list(rows)
-    lines = [_line(SUMMARY), _line(["---"] * len(SUMMARY))]
-    for _, of_scene in groupby(rows, key=lambda row: row["scene"]):
-        lines.append(_line(_summary_cells(list(of_scene))))
-    return "\n".join([*lines, "", _machines(rows)])
-
-
-def replace_block(text: str, block: str, name: str) -> str:
-    """The text with what stands between the two marks replaced. Raises ValueError if a mark is missing."""
-    before, begin, rest = text.partition(BEGIN)
-    _, end, after = rest.partition(END)
-    if not (begin and end):
-        raise ValueError(f"{name} needs the lines {BEGIN} and {END}, in this order")
-    return f"{before}{BEGIN}\n{block}\n{END}{after}"
+    lines = [_summary_cells(list(of_scene)) for _, of_scene in groupby(rows, key=lambda row: row["scene"])]
+    return "\n".join([*pages.table(SUMMARY, lines), "", _machines(rows)])
 
 
 def _machines(rows: Iterable[Row]) -> str:
@@ -143,16 +133,8 @@ def _error(error: float | None, row: Row) -> str:
     return f"{100.0 * error:.2g} %" if error < 1.0 else f"{100.0 * error:.0f} %"
 
 
-def _line(cells: Iterable[str]) -> str:
-    return f"| {' | '.join(cells)} |"
-
-
 def _read(path: Path) -> list[Row]:
     return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
-
-
-def _rewrite(path: Path, block: str) -> None:
-    path.write_text(replace_block(path.read_text(encoding="utf-8"), block, path.name), encoding="utf-8")
 
 
 def main(results: Path | None) -> None:
@@ -160,8 +142,8 @@ def main(results: Path | None) -> None:
     rows = merged(_read(RECORD), _read(results) if results else ())
     slim = [{key: value for key, value in row.items() if key not in ("samples", "source")} for row in rows]
     RECORD.write_text("".join(json.dumps(row) + "\n" for row in slim), encoding="utf-8")
-    _rewrite(PAGE, table(rows))
-    _rewrite(README, summary(rows))
+    pages.rewrite(PAGE, BEGIN, END, table(rows))
+    pages.rewrite(README, BEGIN, END, summary(rows))
 
 
 if __name__ == "__main__":

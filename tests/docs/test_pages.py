@@ -6,6 +6,7 @@ import json
 import re
 from pathlib import Path
 
+import pages
 import pytest
 import validation_tables
 
@@ -105,4 +106,4 @@ def test_only_the_marked_block_of_a_page_is_rewritten(
 
 def test_a_page_without_marks_is_refused() -> None:
     with pytest.raises(ValueError, match="validation:begin"):
-        validation_tables.replace_block("no marks", "table", "page.md")
+        pages.between("no marks", validation_tables.BEGIN, validation_tables.END, "table", "page.md")

@@ -12,7 +12,7 @@ from warpsph import load_scene
 def test_a_table_replaces_what_stands_between_the_marks(tmp_path: Path) -> None:
     page = tmp_path / "page.md"
     page.write_text(f"above\n{trials.BEGIN}\nold\n{trials.END}\nbelow\n")
-    trials.write_table(page, trials.table(["a", "b"], [["1", "2"]]))
+    trials.write_table(page, ["a", "b"], [["1", "2"]])
     lines = ["| a | b |", "| --- | --- |", "| 1 | 2 |"]
     assert page.read_text().splitlines() == ["above", trials.BEGIN, *lines, trials.END, "below"]
 
