@@ -12,7 +12,7 @@ def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
 
 
 def between(text: str, begin: str, end: str, block: str, name: str) -> str:
-    """The text with what stands between two marks replaced. Raises ValueError with the page's name if one is missing."""
+    """The text with what stands between two marks replaced. Raises ValueError if a mark of the page is missing."""
     before, found, rest = text.partition(begin)
     _, closed, after = rest.partition(end)
     if not (found and closed):
