@@ -6,7 +6,7 @@ lie sorted by cell, x fastest, therefore the three cells that are adjacent along
 """
 
 from functools import cache
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import warp as wp
 
@@ -76,18 +76,90 @@ def make_cell_functions(arithmetic: Arithmetic) -> tuple[Any, Any, Any]:
     return wrap, cell_of, row_base
 
 
+def module_of(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> str:
+    """Name of the module of the search's kernels."""
+    axes = "".join("p" if flag else "o" for flag in periodic)
+    return f"warpsph_cells_{arithmetic.label}_{axes}"
+
+
+Sided = Literal["neither", "targets", "sources"]
+
+
+@cache
+def make_list_kernel(arithmetic: Arithmetic, periodic: tuple[bool, ...], sided: Sided = "neither") -> Any:
+    """Return the kernel `list_neighbours`; particles that are `sided` take part only in pairs on their own side."""
+    dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
+    grid_type = make_grid_struct(arithmetic)
+    separation = make_separation(arithmetic, periodic)
+    rows = 3 ** (dim - 1)
+    wrap, cell_of, row_base = make_cell_functions(arithmetic)
+    module = module_of(arithmetic, periodic) + ("" if sided == "neither" else f"_sided_{sided}")
+
+    @wp.kernel(module=module, enable_backward=False)
+    def list_neighbours(
+        offset: int,
+        first_target: int,
+        listed_position: wp.array(dtype=vector),
+        radius: real,
+        grid: grid_type,
+        first_source: int,
+        start: wp.array(dtype=wp.int32),
+        segment: int,
+        continues: int,
+        side: wp.array(dtype=vector),
+        neighbours: wp.array2d(dtype=wp.int32),
+        ends: wp.array2d(dtype=wp.int32),
+    ):
+        """One target particle: append all sources within the radius (but not itself) to its row.
+
+        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]; if it `continues`, it has neighbours of an
+        earlier range already. What does not fit into the row is
+        counted and not stored; the host then makes the rows longer and repeats. A sided particle s has a vector n_s in
+        `side`, and makes no pair with particles at x where n_s . (x - x_s) < 0.
+        """
+        i = offset + wp.tid()
+        a = first_target + i
+        x_a = listed_position[a]
+        cell = cell_of(x_a, grid)
+        capacity = neighbours.shape[1]
+        found = int(0)
+        if segment > 0:
+            found = ends[i, segment - 1]
+        if continues > 0:
+            found = ends[i, segment]
+        # Only at the ends of a row of cells do the three adjacent cells fall into separate ranges.
+        at_end = cell[0] == 0 or cell[0] == grid.cells[0] - 1
+        ranges = wp.where(at_end, 3, 1)
+        width = wp.where(at_end, 1, 3)
+        for row in range(wp.static(rows)):
+            base = row_base(cell, row, grid)
+            for r in range(ranges):
+                bucket = base + wrap(cell[0] - 1 + r, grid.cells[0])
+                for j in range(start[bucket], start[bucket + width]):
+                    b = first_source + j
+                    x_ab = separation(x_a, listed_position[b], grid.period)
+                    near = wp.dot(x_ab, x_ab) < radius * radius and b != a
+                    if wp.static(sided == "sources"):
+                        near = near and wp.dot(side[j], x_ab) >= real(0.0)
+                    if wp.static(sided == "targets"):
+                        near = near and wp.dot(side[i], -x_ab) >= real(0.0)
+                    if near:
+                        if found < capacity:
+                            neighbours[i, found] = b
+                        found += 1
+        ends[i, segment] = found
+
+    return list_neighbours
+
+
 @cache
 def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
     """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
-    dim = arithmetic.dimension
-    real, vector, point = arithmetic.real, arithmetic.vector, arithmetic.point
+    dim, vector, point = arithmetic.dimension, arithmetic.vector, arithmetic.point
     grid_type = make_grid_struct(arithmetic)
     narrow = make_narrow(arithmetic)
-    separation = make_separation(arithmetic, periodic)
-    axes = "".join("p" if flag else "o" for flag in periodic)
-    module = f"warpsph_cells_{arithmetic.label}_{axes}"
-    rows = 3 ** (dim - 1)
-    wrap, cell_of, row_base = make_cell_functions(arithmetic)
+    module = module_of(arithmetic, periodic)
+    _, cell_of, _ = make_cell_functions(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
     def take_positions(
@@ -148,51 +220,6 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
                 high = middle
         start[bucket] = low
 
-    @wp.kernel(module=module, enable_backward=False)
-    def list_neighbours(
-        offset: int,
-        first_target: int,
-        listed_position: wp.array(dtype=vector),
-        radius: real,
-        grid: grid_type,
-        first_source: int,
-        start: wp.array(dtype=wp.int32),
-        segment: int,
-        continues: int,
-        neighbours: wp.array2d(dtype=wp.int32),
-        ends: wp.array2d(dtype=wp.int32),
-    ):
-        """One target particle: append all sources within the radius (but not itself) to its row.
-
-        Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]; if it `continues`, it has neighbours of an
-        earlier range already. What does not fit into the row is
-        counted and not stored; the host then makes the rows longer and repeats.
-        """
-        i = offset + wp.tid()
-        a = first_target + i
-        x_a = listed_position[a]
-        cell = cell_of(x_a, grid)
-        capacity = neighbours.shape[1]
-        found = int(0)
-        if segment > 0:
-            found = ends[i, segment - 1]
-        if continues > 0:
-            found = ends[i, segment]
-        # Only at the ends of a row of cells do the three adjacent cells fall into separate ranges.
-        at_end = cell[0] == 0 or cell[0] == grid.cells[0] - 1
-        ranges = wp.where(at_end, 3, 1)
-        width = wp.where(at_end, 1, 3)
-        for row in range(wp.static(rows)):
-            base = row_base(cell, row, grid)
-            for r in range(ranges):
-                bucket = base + wrap(cell[0] - 1 + r, grid.cells[0])
-                for j in range(start[bucket], start[bucket + width]):
-                    b = first_source + j
-                    x_ab = separation(x_a, listed_position[b], grid.period)
-                    if wp.dot(x_ab, x_ab) < radius * radius and b != a:
-                        if found < capacity:
-                            neighbours[i, found] = b
-                        found += 1
-        ends[i, segment] = found
-
-    return CellKernels(take_positions, assign_cells, find_cell_starts, list_neighbours, module)
+    return CellKernels(
+        take_positions, assign_cells, find_cell_starts, make_list_kernel(arithmetic, periodic), module
+    )

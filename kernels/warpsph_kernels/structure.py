@@ -51,6 +51,8 @@ class StructureOptions:
     """Number of loads with a time law, gravity not counted."""
     damped: bool
     contact: bool
+    immersed: bool
+    """Whether fluid acts on structures."""
     moving_walls: bool
     """Whether some wall that is touched moves by a prescribed law."""
     thin: bool
@@ -78,17 +80,14 @@ class StructureKernels(NamedTuple):
 
 
 @cache
-def make_thin_completion(arithmetic: Arithmetic) -> Any:
-    """Return the device function `complete(H, normal) -> H` of particles whose neighbours lie in a plane.
+def make_turned_normal(arithmetic: Arithmetic) -> Any:
+    """Return the device function `turned_normal(F, n)`: the unit normal of a deformed plane, cof(F) n / |cof(F) n|.
 
-    Such neighbours say nothing of F along the normal n of their plane. F n is taken to be the unit normal of the
-    deformed plane, cof(F) n / |cof(F) n|: no stretch and no shear across, whatever the rotation.
+    Zero for n = 0.
     """
-    dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
-    matrix = arithmetic.matrix
+    dim, vector, matrix = arithmetic.dimension, arithmetic.vector, arithmetic.matrix
 
-    def complete(H: matrix, normal: vector):
-        F = wp.identity(n=wp.static(dim), dtype=real) + H
+    def turned_normal(F: matrix, normal: vector):
         turned = vector()
         if wp.static(dim == 2):
             turned[0] = F[1, 1] * normal[0] - F[1, 0] * normal[1]
@@ -100,7 +99,25 @@ def make_thin_completion(arithmetic: Arithmetic) -> Any:
                 + wp.cross(rows[2], rows[0]) * normal[1]
                 + wp.cross(rows[0], rows[1]) * normal[2]
             )
-        return H + wp.outer(wp.normalize(turned) - F * normal, normal)
+        return wp.normalize(turned)
+
+    return wp.func(turned_normal)
+
+
+@cache
+def make_thin_completion(arithmetic: Arithmetic) -> Any:
+    """Return the device function `complete(H, normal) -> H` of particles whose neighbours lie in a plane.
+
+    Such neighbours say nothing of F along the normal n of their plane. F n is taken to be the unit normal of the
+    deformed plane: no stretch and no shear across, whatever the rotation.
+    """
+    dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
+    matrix = arithmetic.matrix
+    turned_normal = make_turned_normal(arithmetic)
+
+    def complete(H: matrix, normal: vector):
+        F = wp.identity(n=wp.static(dim), dtype=real) + H
+        return H + wp.outer(turned_normal(F, normal) - F * normal, normal)
 
     return wp.func(complete)
 
@@ -181,7 +198,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
     pose_type = make_pose_struct(arithmetic)
     _, unpack = make_packing(arithmetic)
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
-    tracks_work = options.loads > 0 or options.moving_clamps
+    tracks_work = options.loads > 0 or options.moving_clamps or options.immersed
 
     @wp.func
     def masked(mask: vector, a: point, b: point):
@@ -224,6 +241,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         reference: wp.array(dtype=point),
         load: wp.array2d(dtype=vector),
         load_factor: wp.array2d(dtype=wp.float64),
+        fluid_force: wp.array(dtype=vector),
         acceleration: wp.array(dtype=point),
         displacement: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
@@ -231,8 +249,8 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
     ):
         """One particle: velocity over half a step, displacement over the whole step; clamped components as prescribed.
 
-        `work` [J] gains what loads do to the particle in the step, and half of what moving clamps do: the other half
-        follows when the forces at the end of the step are known, so that the sum is a trapezoidal rule.
+        `work` [J] gains what loads and fluid do to the particle in the step, and half of what moving clamps do: the
+        other half follows when the forces at the end of the step are known, so that the sum is a trapezoidal rule.
         """
         i = offset + wp.tid()
         step = clock[wp.static(STEP)]
@@ -260,6 +278,8 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
                     done += wp.float64(0.5) * step * mass * power
                     u = masked(mask, u, after.rotation * X + after.shift - X)
                     half = masked(mask, half, after.rotation_rate * X + after.shift_rate)
+            if wp.static(options.immersed):
+                done += wp.dot(widen(fluid_force[i]), u - displacement[i])
             work[i] += done
         displacement[i] = u
         velocity[i] = half
@@ -287,12 +307,13 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         load: wp.array2d(dtype=vector),
         load_factor: wp.array2d(dtype=wp.float64),
         contact_force: wp.array(dtype=vector),
+        fluid_force: wp.array(dtype=vector),
         acceleration: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
         work: wp.array(dtype=wp.float64),
         dissipated: wp.array(dtype=wp.float64),
     ):
-        """One particle: rho0 dv_a/dt = sum_b w_ab [(Q_a + Q_b) X_ab + 2 penalty u_ab] + rho0 g + loads.
+        """One particle: rho0 dv_a/dt = sum_b w_ab [(Q_a + Q_b) X_ab + 2 penalty u_ab] + rho0 g + loads + fluid.
 
         Beside a rigid particle there is one penalty, not two.
 
@@ -317,6 +338,8 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
                 total += P_a * own_gradient[i, n] + stress[neighbours[i, n]] * other_gradient[i, n]
         if wp.static(options.contact):
             total += contact_force[i] / volume[i]
+        if wp.static(options.immersed):
+            total += fluid_force[i] / volume[i]
         a = widen(total / p.density + gravity)
         for k in range(wp.static(options.loads)):
             a += load_factor[int(clock[wp.static(SUB_STEP)]) + 1, k] * widen(load[k, i])

@@ -7,14 +7,14 @@ among the fluid, then those among the walls.
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.cells import make_cell_kernels, make_grid_struct
+from warpsph_kernels.cells import make_cell_kernels, make_grid_struct, make_list_kernel
 from warpsph_kernels.reorder import gather_words
 
 from warpsph.particles.launch import Launcher, Pass
@@ -103,6 +103,8 @@ class NeighbourSearch:
         pairs: (target range, source ranges) of each list, by position in `ranges`: one group of ranges a segment.
         radius, skin: metres. Lists stay complete while no particle has moved more than half the skin.
         position: master positions of all particles, (n,) double vectors [m].
+        sides: by position in `ranges`, a vector for each particle of a sided range: it is listed only with particles
+            on the side to which its vector points, or all round where that is zero. Not for pairs of two such ranges.
     """
 
     def __init__(
@@ -117,6 +119,7 @@ class NeighbourSearch:
         skin: float,
         spacing: float,
         position: wp.array,
+        sides: Mapping[int, wp.array] | None = None,
     ) -> None:
         self.arithmetic = arithmetic
         self.space = space
@@ -141,6 +144,12 @@ class NeighbourSearch:
             )
             for target, groups in pairs
         ]
+        self._sides = {self.tables[index]: side for index, side in (sides or {}).items()}
+        self._sideless = wp.zeros(1, dtype=arithmetic.vector, device=launcher.device)
+        if self._sides:
+            self._list_kernels = {
+                sided: make_list_kernel(arithmetic, space.periodic, sided) for sided in ("targets", "sources")
+            }
         self._listed = [
             Reordered(launcher, self.listed_position, table, table.first) for table in self.tables
         ]
@@ -173,6 +182,14 @@ class NeighbourSearch:
         self.builds += 1
         for rows in self.rows:
             self._fill_completely(rows)
+
+    def _listing(self, targets: CellTable, source: CellTable) -> tuple[Any, wp.array]:
+        """The kernel that lists these pairs, and the sides that it looks at."""
+        if source in self._sides:
+            return self._list_kernels["sources"], self._sides[source]
+        if targets in self._sides:
+            return self._list_kernels["targets"], self._sides[targets]
+        return self._kernels.list_neighbours, self._sideless
 
     def list_once(self, target: int, source: int) -> NeighbourRows:
         """Return rows of one table's particles with another's (or its own), for a single use."""
@@ -268,9 +285,10 @@ class NeighbourSearch:
         groups = enumerate(rows.sources)
         places = [(segment, k > 0, table) for segment, group in groups for k, table in enumerate(group)]
         for segment, continues, source in places:
+            kernel, side = self._listing(rows.targets, source)
             self._launcher.bind(
                 "list neighbours",
-                self._kernels.list_neighbours,
+                kernel,
                 rows.targets.first,
                 self.listed_position,
                 self.arithmetic.real(self.reach),
@@ -279,6 +297,7 @@ class NeighbourSearch:
                 source.start,
                 segment,
                 int(continues),
+                side,
                 rows.index,
                 rows.ends,
             ).run(rows.targets.count)

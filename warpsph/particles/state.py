@@ -1,4 +1,4 @@
-"""The arrays of a run: evolving state and scratch, in one index space of fluid first, then walls."""
+"""The arrays of a run: evolving state and scratch, in one index space of fluid, walls and faces of structures."""
 
 from __future__ import annotations
 
@@ -33,14 +33,16 @@ UNITS = {
 
 @dataclass(frozen=True)
 class Layout:
-    """Places for particles of each kind; fluid has the indices 0 .. fluids - 1, walls those behind.
+    """Places for particles of each kind; fluid has the indices 0 .. fluids - 1, walls those behind, then faces.
 
-    The last `images` places of the fluid are for its mirror images at planes of symmetry.
+    The last `images` places of the fluid are for its mirror images at planes of symmetry. `faces` are wall particles
+    that move with structures.
     """
 
     fluids: int
     walls: int
     images: int = 0
+    faces: int = 0
 
     @property
     def first_image(self) -> int:
@@ -48,8 +50,18 @@ class Layout:
         return self.fluids - self.images
 
     @property
-    def total(self) -> int:
+    def solids(self) -> int:
+        """Number of particles that act on the fluid as walls."""
+        return self.walls + self.faces
+
+    @property
+    def first_face(self) -> int:
+        """Index of the first face of a structure."""
         return self.fluids + self.walls
+
+    @property
+    def total(self) -> int:
+        return self.fluids + self.solids
 
 
 @dataclass(frozen=True)

@@ -38,6 +38,13 @@ class Assembly:
             pressure, density, density * float(c.sound_speed) ** 2, tuple(numbers)
         )
 
+    def vectors(self, values: np.ndarray) -> wp.array:
+        """Vectors (n, dim) on the device, at least one."""
+        rows = values if len(values) else np.zeros((1, self.options.arithmetic.dimension))
+        return wp.array(
+            np.ascontiguousarray(rows), dtype=self.options.arithmetic.vector, device=self.launcher.device
+        )
+
     @property
     def origin(self) -> Any:
         """Origin of the single-precision coordinates as a device value."""
@@ -55,10 +62,16 @@ class WallSurface:
     friction: wp.array
     normal: wp.array
 
+    def part(self, first: int, count: int) -> WallSurface:
+        """A view of `count` wall particles from the `first` on."""
+        return WallSurface(self.friction[first : first + count], self.normal[first : first + count])
+
 
 @dataclass(frozen=True)
-class Lists:
-    """Neighbour rows by target; None where the scene needs no such pairs."""
+class WallRange:
+    """A contiguous range of wall particles: its place in the index space, its neighbour rows, and its surface."""
 
-    fluid: NeighbourRows
-    wall: NeighbourRows | None
+    first: int
+    count: int
+    rows: NeighbourRows
+    surface: WallSurface

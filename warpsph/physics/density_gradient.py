@@ -5,14 +5,15 @@ from __future__ import annotations
 import warp as wp
 from warpsph_kernels.density_gradient import make_density_gradient
 
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.particles.neighbours import NeighbourRows
+from warpsph.physics.assembly import Assembly
 
 
 class DensityGradient:
     """The gradient [kg/m^(dim+1)] of each fluid particle, and the pass that finds it."""
 
-    def __init__(self, assembly: Assembly, lists: Lists) -> None:
-        self._assembly, self._lists = assembly, lists
+    def __init__(self, assembly: Assembly, rows: NeighbourRows) -> None:
+        self._assembly, self._rows = assembly, rows
         self._kernel = make_density_gradient(assembly.options)
         self.gradient = wp.zeros(
             assembly.layout.fluids, dtype=assembly.options.arithmetic.vector, device=assembly.launcher.device
@@ -26,7 +27,7 @@ class DensityGradient:
 
     def bind_lists(self) -> None:
         """Build the pass; needed again when the rows of the neighbour lists have grown."""
-        a, rows = self._assembly, self._lists.fluid
+        a, rows = self._assembly, self._rows
         self._find = a.launcher.bind(
             "density gradient",
             self._kernel,
@@ -40,4 +41,4 @@ class DensityGradient:
 
     def find(self) -> None:
         """Find the gradient from positions and densities at the end of the step."""
-        self._find.run(self._lists.fluid.targets.count)
+        self._find.run(self._rows.targets.count)

@@ -11,8 +11,8 @@ from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
 from warpsph.laws.viscosities import VISCOSITY_LAWS
-from warpsph.particles.neighbours import SearchSpace
-from warpsph.physics.assembly import Assembly, Lists, WallSurface
+from warpsph.particles.neighbours import NeighbourRows, SearchSpace
+from warpsph.physics.assembly import Assembly, WallRange, WallSurface
 from warpsph.physics.density_gradient import DensityGradient
 from warpsph.physics.gradient_correction import GradientCorrection
 from warpsph.physics.material import largest_kinematic_viscosity, material, padded, smoothing_length
@@ -31,7 +31,8 @@ BARRIER_STRENGTH = 0.4
 def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_walls: bool) -> FluidOptions:
     """Return the options that select device code for the scene."""
     numerics = scene.numerics
-    no_slip = any(boundary.slip == "no_slip" for boundary in scene.boundaries.values())
+    slips = [solid.slip for solid in scene.boundaries.values()] + [s.slip for s in scene.structures.values()]
+    no_slip = "no_slip" in slips
     return FluidOptions(
         arithmetic=arithmetic,
         periodic=space.periodic,
@@ -115,24 +116,24 @@ def step_viscosity(scene: Scene, sound_speed: float) -> float:
 class FluidModel:
     """The passes of the fluid, and of what only some scenes have beside them. `count` particles are alive."""
 
-    def __init__(self, assembly: Assembly, lists: Lists, surface: WallSurface, scene: Scene) -> None:
+    def __init__(self, assembly: Assembly, rows: NeighbourRows, surface: WallSurface, scene: Scene) -> None:
         options, numerics = assembly.options, scene.numerics
-        self._assembly, self._lists, self._surface = assembly, lists, surface
+        self._assembly, self._rows, self._surface = assembly, rows, surface
         self._stress: StressModel | None = None
         self._order: ParticleOrderModel | None = None
         self._density_gradient: DensityGradient | None = None
         self._density_sum: DensitySum | None = None
         if options.stress != "none":
-            self._stress = StressModel(assembly, lists, surface, scene)
+            self._stress = StressModel(assembly, rows, surface, scene)
         if options.particle_order != "none":
-            self._order = ParticleOrderModel(assembly, lists, numerics.particle_order, scene.spacing)
+            self._order = ParticleOrderModel(assembly, rows, numerics.particle_order, scene.spacing)
         if options.density_diffusion == "delta_sph":
-            self._density_gradient = DensityGradient(assembly, lists)
+            self._density_gradient = DensityGradient(assembly, rows)
         if options.density != "continuity":
-            self._density_sum = DensitySum(assembly, lists, scene)
+            self._density_sum = DensitySum(assembly, rows, scene)
         self._correction: GradientCorrection | None = None
         if options.kernel_gradient != "plain":
-            self._correction = GradientCorrection(assembly, lists)
+            self._correction = GradientCorrection(assembly, rows)
         self._kernels = make_fluid_kernels(options)
         self._none = wp.zeros(1, dtype=options.arithmetic.vector, device=assembly.launcher.device)
         self._bind_points()
@@ -163,7 +164,7 @@ class FluidModel:
 
     @property
     def count(self) -> int:
-        return self._lists.fluid.targets.count
+        return self._rows.targets.count
 
     @property
     def largest_shift(self) -> float:
@@ -210,10 +211,10 @@ class FluidModel:
             if self._correction:
                 self._correction.correct_divergence()
 
-    def react(self, force: wp.array) -> None:
-        """Add what beside pair forces acts on each wall particle [N], shape (walls,)."""
+    def react(self, walls: WallRange, force: wp.array) -> None:
+        """Add what beside pair forces acts on each wall particle of a range [N], shape (its count,)."""
         if self._stress:
-            self._stress.react(force)
+            self._stress.react(walls, force)
 
     def synchronise(self) -> None:
         """Bring pressure and volume to the time of position and density."""
@@ -267,7 +268,7 @@ class FluidModel:
         )
 
     def _bind_sums(self) -> None:
-        a, rows = self._assembly, self._lists.fluid
+        a, rows = self._assembly, self._rows
         gradient = self._density_gradient.gradient if self._density_gradient else self._none
         self._accelerate = a.launcher.bind(
             "accelerate",

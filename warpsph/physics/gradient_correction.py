@@ -5,15 +5,16 @@ from __future__ import annotations
 import warp as wp
 from warpsph_kernels.gradient_correction import make_finite_particle_kernels, make_renormalised_kernels
 
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.particles.neighbours import NeighbourRows
+from warpsph.physics.assembly import Assembly
 
 
 class GradientCorrection:
     """What the form has beyond the plain sums; `excess` is L - I [1] of each fluid particle, renormalised only."""
 
-    def __init__(self, assembly: Assembly, lists: Lists) -> None:
+    def __init__(self, assembly: Assembly, rows: NeighbourRows) -> None:
         options = assembly.options
-        self._assembly, self._lists = assembly, lists
+        self._assembly, self._rows = assembly, rows
         self._renormalised = options.kernel_gradient == "renormalised"
         make = make_renormalised_kernels if self._renormalised else make_finite_particle_kernels
         self._kernels = make(options)
@@ -28,7 +29,7 @@ class GradientCorrection:
 
     def bind_lists(self) -> None:
         """Build the passes; needed again when the rows of the neighbour lists have grown."""
-        a, rows, bind = self._assembly, self._lists.fluid, self._assembly.launcher.bind
+        a, rows, bind = self._assembly, self._rows, self._assembly.launcher.bind
         lists = (rows.index, rows.ends)
         middle = (*lists, a.scratch.position_pressure, a.state.velocity_volume)
         end = (*lists, a.scratch.position_density, a.state.velocity_volume)
@@ -52,11 +53,11 @@ class GradientCorrection:
 
     def correct_pressure(self) -> None:
         """Correct the pressure part of the accelerations."""
-        count = self._lists.fluid.targets.count
+        count = self._rows.targets.count
         if self._renormalised:
             self._find.run(count)
         self._pressure.run(count)
 
     def correct_divergence(self) -> None:
         """Correct density rate and density at the end of the step."""
-        self._divergence.run(self._lists.fluid.targets.count)
+        self._divergence.run(self._rows.targets.count)

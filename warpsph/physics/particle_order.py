@@ -5,7 +5,8 @@ from __future__ import annotations
 import warp as wp
 from warpsph_kernels.particle_order import LARGEST_SHIFT, make_order_kernels
 
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.particles.neighbours import NeighbourRows
+from warpsph.physics.assembly import Assembly
 from warpsph.scene.fluid_models import ParticleOrder
 
 
@@ -16,10 +17,10 @@ class ParticleOrderModel:
     smallest eigenvalue of the moment matrix [1], of shifting only.
     """
 
-    def __init__(self, assembly: Assembly, lists: Lists, order: ParticleOrder, spacing: float) -> None:
+    def __init__(self, assembly: Assembly, rows: NeighbourRows, order: ParticleOrder, spacing: float) -> None:
         arithmetic, device = assembly.options.arithmetic, assembly.launcher.device
         fluids = assembly.layout.fluids
-        self._assembly, self._lists = assembly, lists
+        self._assembly, self._rows = assembly, rows
         self._finds_surface = order.type == "shifting"
         self._strength = arithmetic.real(order.strength)
         self._kernels = make_order_kernels(assembly.options)
@@ -45,7 +46,7 @@ class ParticleOrderModel:
 
     def bind_lists(self) -> None:
         """Build the passes; needed again when the rows of the neighbour lists have grown."""
-        a, rows = self._assembly, self._lists.fluid
+        a, rows = self._assembly, self._rows
         lists = (rows.index, rows.ends, a.scratch.position_pressure, a.state.velocity_volume)
         self._find = a.launcher.bind(
             "particle order",
@@ -65,7 +66,7 @@ class ParticleOrderModel:
 
     def find(self) -> None:
         """Add what the last shift carries to the accelerations, and find the next shift."""
-        count = self._lists.fluid.targets.count
+        count = self._rows.targets.count
         self._find.run(count)
         if self._finds_surface:
             self._limit.run(count)

@@ -18,8 +18,8 @@ MACH_AT_EXPECTED_SPEED = 0.1
 def expected_speed(scene: Scene, sets: Sequence[SampledSet], wall_speed: float) -> float:
     """Return the largest speed [m/s] that the scene lets expect.
 
-    It adds the largest initial speed, the largest speed of a wall, and the speed sqrt(2 g H) of a fall from the
-    highest fluid particle to the lowest particle, or sqrt(2 p / rho) of the initial pressure if that is more.
+    It adds the largest initial speed of a fluid or a structure, the largest speed of a wall, and the speed
+    sqrt(2 g H) of a fall from the highest fluid particle to the lowest particle, or sqrt(2 p / rho) of the initial pressure if that is more.
     """
     if scene.numerics.expected_speed is not None:
         return scene.numerics.expected_speed
@@ -28,7 +28,8 @@ def expected_speed(scene: Scene, sets: Sequence[SampledSet], wall_speed: float) 
     height = max((float(np.max(-s.position @ gravity)) for s in fluids), default=0.0)
     depth = min((float(np.min(-s.position @ gravity)) for s in sets if len(s.position)), default=0.0)
     heads = [float(np.max(s.pressure)) / scene.fluids[s.name].density for s in fluids]
-    initial = max((float(np.max(np.linalg.norm(s.velocity, axis=1))) for s in fluids), default=0.0)
+    moving = [s for s in sets if s.kind != "boundary" and len(s.position)]
+    initial = max((float(np.max(np.linalg.norm(s.velocity, axis=1))) for s in moving), default=0.0)
     falling = math.sqrt(2.0 * max(height - depth, *heads, 0.0)) if fluids else 0.0
     return initial + wall_speed + falling
 

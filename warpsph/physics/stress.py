@@ -10,8 +10,9 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.rheology import make_stress_struct
 from warpsph_kernels.stress import make_stress_kernels
 
+from warpsph.particles.neighbours import NeighbourRows
 from warpsph.particles.state import write_array
-from warpsph.physics.assembly import Assembly, Lists, WallSurface
+from warpsph.physics.assembly import Assembly, WallRange, WallSurface
 from warpsph.physics.material import largest_kinematic_viscosity, material
 from warpsph.scene.expressions import evaluate
 from warpsph.scene.schema import Scene
@@ -53,9 +54,9 @@ class StressModel:
     the law makes of it; stress [Pa].
     """
 
-    def __init__(self, assembly: Assembly, lists: Lists, surface: WallSurface, scene: Scene) -> None:
+    def __init__(self, assembly: Assembly, rows: NeighbourRows, surface: WallSurface, scene: Scene) -> None:
         arithmetic, device = assembly.options.arithmetic, assembly.launcher.device
-        self._assembly, self._lists, self._surface = assembly, lists, surface
+        self._assembly, self._rows, self._surface = assembly, rows, surface
         self._constants = stress_constants(scene, arithmetic)
         self._kernels = make_stress_kernels(assembly.options)
         fluids = assembly.layout.fluids
@@ -79,7 +80,7 @@ class StressModel:
 
     def bind_lists(self) -> None:
         """Build the passes; needed again when the rows of the neighbour lists have grown."""
-        a, rows, kernels = self._assembly, self._lists.fluid, self._kernels
+        a, rows, kernels = self._assembly, self._rows, self._kernels
         records = (a.scratch.position_pressure, a.state.velocity_volume, self._surface.friction)
         lists = (rows.index, rows.ends)
         first = a.layout.fluids
@@ -110,27 +111,26 @@ class StressModel:
 
     def find(self) -> None:
         """Find the stress of every particle from the present velocities."""
-        self._find.run(self._lists.fluid.targets.count)
+        self._find.run(self._rows.targets.count)
 
     def add(self) -> None:
         """Add the divergence of the stress to the accelerations."""
-        self._add.run(self._lists.fluid.targets.count)
+        self._add.run(self._rows.targets.count)
 
-    def react(self, force: wp.array) -> None:
-        """Add the force of the stress on each wall particle [N]."""
-        a, rows = self._assembly, self._lists.wall
-        assert rows is not None
-        records = (a.scratch.position_pressure, a.state.velocity_volume, self._surface.friction)
+    def react(self, walls: WallRange, force: wp.array) -> None:
+        """Add the force of the stress on each wall particle of a range [N], shape (its count,)."""
+        a = self._assembly
+        records = (a.scratch.position_pressure, a.state.velocity_volume, walls.surface.friction)
         self.find()
         a.launcher.bind(
             "wall force",
             self._kernels.react,
             a.constants,
-            a.layout.fluids,
-            rows.index,
-            rows.ends,
+            walls.first,
+            walls.rows.index,
+            walls.rows.ends,
             *records,
             self.viscosity,
             self.stress,
             force,
-        ).run(a.layout.walls)
+        ).run(walls.count)

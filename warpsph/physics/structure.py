@@ -52,6 +52,7 @@ UNITS = {
     "gradient": "1",
     "traction": "Pa",
     "contact_force": "N",
+    "fluid_force": "N",
     "extremes": "SI",
     "load_factor": "1",
     "prescriptions": "SI",
@@ -121,12 +122,14 @@ class StructureState:
 
 @dataclass(frozen=True)
 class StructureScratch:
-    """What is computed anew: H [1], Q and P [Pa] (see the kernels), contact forces [N], extremes, time laws, output."""
+    """What is computed anew: H [1], Q and P [Pa] (see the kernels), forces of contact and fluid [N], extremes, time
+    laws, output."""
 
     gradient: wp.array
     traction: wp.array
     stress: wp.array
     contact_force: wp.array
+    fluid_force: wp.array
     extremes: wp.array
     load_factor: wp.array
     prescriptions: wp.array
@@ -161,6 +164,7 @@ def allocate_scratch(
         traction=zeros(count, matrix),
         stress=zeros(count if options.scattered else 1, matrix),
         contact_force=zeros(count if options.contact else 1, arithmetic.vector),
+        fluid_force=zeros(count if options.immersed else 1, arithmetic.vector),
         extremes=zeros((max(blocks, 1), EXTREMES), wp.float64),
         load_factor=zeros((SUB_STEPS + 1, max(options.loads, 1)), wp.float64),
         prescriptions=zeros((SUB_STEPS + 1, max(motions, 1)), make_pose_struct(arithmetic)),
@@ -249,6 +253,7 @@ class StructureModel:
             r.position,
             r.load,
             t.load_factor,
+            t.fluid_force,
             s.acceleration,
             s.displacement,
             s.velocity,
@@ -277,6 +282,7 @@ class StructureModel:
             r.load,
             t.load_factor,
             t.contact_force,
+            t.fluid_force,
             s.acceleration,
             s.velocity,
             s.work,

@@ -9,7 +9,8 @@ import warp as wp
 from warpsph_kernels.summation import make_sum_density
 
 from warpsph.laws.smoothing import SMOOTHING_LAWS
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.particles.neighbours import NeighbourRows
+from warpsph.physics.assembly import Assembly
 from warpsph.scene.schema import Scene
 
 
@@ -25,15 +26,15 @@ def lattice_sum(scene: Scene) -> float:
 class DensitySum:
     """The pass that sums the density."""
 
-    def __init__(self, assembly: Assembly, lists: Lists, scene: Scene) -> None:
-        self._assembly, self._lists = assembly, lists
+    def __init__(self, assembly: Assembly, rows: NeighbourRows, scene: Scene) -> None:
+        self._assembly, self._rows = assembly, rows
         self._kernel = make_sum_density(assembly.options)
         self._lattice_sum = wp.float64(lattice_sum(scene))
         self.bind_lists()
 
     def bind_lists(self) -> None:
         """Build the pass; needed again when the rows of the neighbour lists have grown."""
-        a, rows = self._assembly, self._lists.fluid
+        a, rows = self._assembly, self._rows
         self._sum = a.launcher.bind(
             "sum density",
             self._kernel,
@@ -47,4 +48,4 @@ class DensitySum:
 
     def find(self) -> None:
         """Sum the density at the positions of the middle of the step."""
-        self._sum.run(self._lists.fluid.targets.count)
+        self._sum.run(self._rows.targets.count)

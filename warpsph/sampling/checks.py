@@ -9,7 +9,8 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from warpsph.sampling.axes import face_axes
-from warpsph.sampling.contact import inside_wall
+from warpsph.sampling.clamps import clamped
+from warpsph.sampling.contact import as_wall, inside_wall
 from warpsph.sampling.walls import layer_count
 from warpsph.scene.bounds import bounding_box
 from warpsph.scene.errors import Problem
@@ -51,6 +52,31 @@ def wall_conflict_problems(
             message = f"{share} lie inside the wall {wall!r}, such as {_at(inside[0])}"
             allowed = f"a shape clear of boundaries.{wall}; type: difference cuts one shape out of another"
             yield Problem.at(f"fluids.{fluid}.shape", message, allowed)
+
+
+def structure_conflict_problems(
+    scene: Scene,
+    fluids: Mapping[str, np.ndarray],
+    walls: Mapping[str, np.ndarray],
+    structures: Mapping[str, np.ndarray],
+) -> Iterator[Problem]:
+    """Fluids that reach into structures, and in a fluid structures that reach into walls without being clamped there."""
+    for (fluid, points), (name, structure) in product(fluids.items(), scene.structures.items()):
+        inside = inside_wall(points, as_wall(structure), structures[name], scene.spacing)
+        if len(inside):
+            share = f"{len(inside)} of its {len(points)} particles"
+            message = f"{share} lie inside the structure {name!r}, such as {_at(inside[0])}"
+            allowed = f"a shape clear of structures.{name}; type: difference cuts one shape out of another"
+            yield Problem.at(f"fluids.{fluid}.shape", message, allowed)
+    if not scene.fluids:
+        return
+    for (name, points), (wall, boundary) in product(structures.items(), scene.boundaries.items()):
+        free = points[~clamped(scene, name, points)]
+        inside = inside_wall(free, boundary, walls[wall], scene.spacing)
+        if len(inside):
+            message = f"{len(inside)} of its particles lie inside the wall {wall!r}, such as {_at(inside[0])}"
+            allowed = f"a shape clear of boundaries.{wall}, or a clamp of all components there"
+            yield Problem.at(f"structures.{name}.shape", message, allowed)
 
 
 def overlap_problems(section: str, sets: Mapping[str, np.ndarray], spacing: float) -> Iterator[Problem]:

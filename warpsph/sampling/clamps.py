@@ -1,4 +1,4 @@
-"""Where clamped particles stand: on the surface of their clamp, where they are next to free ones."""
+"""Which particles are clamped, and where they stand: on the surface of their clamp, where they are next to free ones."""
 
 from __future__ import annotations
 
@@ -6,10 +6,21 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from warpsph.sampling.distance import signed_distance, surface_normals
+from warpsph.sampling.loads import inside
+from warpsph.scene.schema import Scene
 from warpsph.scene.shapes import Shape
 
 CLOSEST = 0.5
 """Distance from free particles, in spacings, that a clamped particle keeps: that of a cell's centre from its face."""
+
+
+def clamped(scene: Scene, structure: str, position: np.ndarray) -> np.ndarray:
+    """Which particles (n, dim) [m] of a structure a clamp holds in all components, shape (n,)."""
+    held = np.zeros(len(position), dtype=bool)
+    for clamp in scene.structures[structure].clamps.values():
+        if clamp.is_whole:
+            held |= inside(clamp.region, position, scene.spacing)
+    return held
 
 
 def onto_surface(region: Shape, position: np.ndarray, clamped: np.ndarray, spacing: float) -> np.ndarray:

@@ -11,10 +11,16 @@ from warpsph.sampling.distance import DistanceFunction, signed_distance
 from warpsph.sampling.packing import CLOSEST, SURFACE_CLEARANCE, pushed_inside
 from warpsph.sampling.walls import beyond_open_faces
 from warpsph.scene.schema import Boundary
+from warpsph.scene.structures import Structure
 
 # In units of the spacing: farther than any point inside a wall from the next wall particle, nearer than the
 # fluid on the same lattice.
 _NEAR = 0.9
+
+
+def as_wall(structure: Structure) -> Boundary:
+    """A structure at rest as the wall that it is to a fluid."""
+    return Boundary(shape=structure.shape, side="solid")
 
 
 def inside_wall(points: np.ndarray, boundary: Boundary, wall: np.ndarray, spacing: float) -> np.ndarray:

@@ -10,9 +10,11 @@ from warpsph.sampling.checks import (
     empty_problems,
     geometry_problems,
     overlap_problems,
+    structure_conflict_problems,
     wall_conflict_problems,
 )
-from warpsph.sampling.contact import clear_of_wall
+from warpsph.sampling.clamps import clamped
+from warpsph.sampling.contact import as_wall, clear_of_wall
 from warpsph.sampling.initial_state import initial_field, initial_pressure
 from warpsph.sampling.kinematics import rigid_motions
 from warpsph.sampling.lattice import Lattice, cells_inside
@@ -34,16 +36,17 @@ def sample(scene: Scene) -> tuple[SampledSet, ...]:
     """
     _refuse(geometry_problems(scene))
     lattices = lattices_of(scene)
-    walls = _walls(scene, lattices)
-    cells = {
-        name: cells_inside(lattices[name], fluid.shape).positions() for name, fluid in scene.fluids.items()
-    }
     structures = {
         name: cells_inside(lattices[name], structure.shape).positions()
         for name, structure in scene.structures.items()
     }
+    walls = _clear_of_clamps(scene, _walls(scene, lattices), structures)
+    cells = {
+        name: cells_inside(lattices[name], fluid.shape).positions() for name, fluid in scene.fluids.items()
+    }
     _refuse(wall_conflict_problems(scene, cells, walls))
-    fluids = {name: _clear_of_walls(scene, points, walls) for name, points in cells.items()}
+    _refuse(structure_conflict_problems(scene, cells, walls, structures))
+    fluids = {name: _clear_of_walls(scene, points, walls, structures) for name, points in cells.items()}
     kinds = {"fluids": fluids, "boundaries": walls, "structures": structures}
     _refuse([problem for kind, sets in kinds.items() for problem in empty_problems(kind, sets)])
     _refuse(overlap_problems("fluids", fluids, scene.spacing))
@@ -73,9 +76,20 @@ def _walls(scene: Scene, lattices: Mapping[str, Lattice]) -> Positions:
     return walls
 
 
-def _clear_of_walls(scene: Scene, points: np.ndarray, walls: Positions) -> np.ndarray:
+def _clear_of_clamps(scene: Scene, walls: Positions, structures: Positions) -> Positions:
+    """Walls without the particles in whose places structures are clamped, which act on the fluid as walls do."""
+    if not scene.fluids:
+        return walls
+    held = [points[clamped(scene, name, points)] for name, points in structures.items()]
+    others = np.concatenate([np.empty((0, scene.dimension)), *held])
+    return {name: away_from(points, others, CLOSEST * scene.spacing) for name, points in walls.items()}
+
+
+def _clear_of_walls(scene: Scene, points: np.ndarray, walls: Positions, structures: Positions) -> np.ndarray:
     for name, boundary in scene.boundaries.items():
         points = clear_of_wall(points, boundary, walls[name], scene.spacing)
+    for name, structure in scene.structures.items():
+        points = clear_of_wall(points, as_wall(structure), structures[name], scene.spacing)
     return points
 
 

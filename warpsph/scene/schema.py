@@ -22,7 +22,7 @@ from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
 from warpsph.scene.references import Reference
 from warpsph.scene.shapes import Bounds, Shape
-from warpsph.scene.structures import Contact, Structure
+from warpsph.scene.structures import Contact, Coupling, Structure
 from warpsph.scene.types import (
     Axis,
     FileName,
@@ -232,6 +232,9 @@ class Scene(SceneModel):
 
     contact: Contact | None = None
     """Contact of structures; null: they pass through each other and through walls. Default: null."""
+
+    coupling: Coupling = Coupling()
+    """How fluids and structures go on together. Default: {sub_steps: auto}."""
 
     probes: Annotated[Mapping[Name, Probe], _NAMED] = {}
     """Quantities sampled over time, by name. Default: none."""

@@ -124,6 +124,9 @@ class Structure(SceneModel):
     material: Material
     """What it is made of."""
 
+    slip: Literal["free_slip", "no_slip"] = "free_slip"
+    """Tangential condition on the fluid. Default: free_slip."""
+
     plane: Literal["strain", "stress"] = "strain"
     """State across the plane in two dimensions: no strain, or no stress. Default: strain."""
 
@@ -180,6 +183,15 @@ class StructureNumerics(SceneModel):
 
     solution: Solution = DynamicSolution()
     """Motion or equilibrium. Default: {type: dynamic}."""
+
+
+class Coupling(SceneModel):
+    """How fluids and structures go on together in time."""
+
+    sub_steps: Literal["auto"] | PositiveInteger = "auto"
+    """Steps of the structures within one step of the fluid [1]. auto: the fluid steps as far as it can alone, and the
+    structures make as many steps within that as they need. A number: at most so many, the step of the fluid is
+    shortened to what they allow; 1 is one shared step. Default: auto."""
 
 
 class Contact(SceneModel):

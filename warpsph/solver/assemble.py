@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from itertools import count
 
 import numpy as np
 import warp as wp
@@ -14,7 +15,7 @@ from warpsph.laws.states import STATE_LAWS
 from warpsph.particles.launch import Launcher
 from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
-from warpsph.physics.assembly import Assembly, Lists
+from warpsph.physics.assembly import Assembly, WallRange, WallSurface
 from warpsph.physics.boundary import WallModel, make_wall_surface, no_slip_flags
 from warpsph.physics.fluid import (
     FluidModel,
@@ -25,28 +26,60 @@ from warpsph.physics.fluid import (
 from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.physics.sound_speed import choose_sound_speed
 from warpsph.physics.symmetry import SymmetryModel, images_of
+from warpsph.physics.wall_motion import PrescribedMotion
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
 from warpsph.sampling.mirror import mirror_ways
 from warpsph.sampling.walls import period_of
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
+from warpsph.solver.face_assembly import FaceParts, SampledFaces, make_faces, sample_faces
+from warpsph.solver.structure_assembly import StructureParts
 
-FLUID, WALL = 0, 1
-"""Tables of the neighbour search."""
+FLUID = 0
+"""Table of the fluid in the neighbour search."""
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Places of the other tables in the neighbour search, None where the scene needs no such table."""
+
+    wall: int | None
+    face: int | None
+    image: int | None
+
+    @classmethod
+    def of(cls, layout: Layout) -> Tables:
+        """The tables that a run has, numbered in the order of their declaration."""
+        free = count(FLUID + 1)
+        return cls(*(next(free) if size else None for size in (layout.walls, layout.faces, layout.images)))
+
+
+@dataclass(frozen=True)
+class WallParts:
+    """Walls: what the fluid sees of them, and what moves them."""
+
+    model: WallModel
+    motion: PrescribedMotion
 
 
 @dataclass(frozen=True)
 class Parts:
-    """A run, assembled."""
+    """A run, assembled. `followers` are the arrays that each table takes along when it is sorted."""
 
     assembly: Assembly
     search: NeighbourSearch
+    tables: Tables
     fluid: FluidModel
-    walls: WallModel | None
+    walls: WallParts | None
+    faces: FaceParts | None
     symmetry: SymmetryModel | None
-    fluid_arrays: tuple[Reordered, ...]
-    wall_arrays: tuple[Reordered, ...]
+    followers: Mapping[int, tuple[Reordered, ...]]
+
+    @property
+    def solids(self) -> tuple[WallModel, ...]:
+        """What acts on the fluid as walls."""
+        return tuple(parts.model for parts in (self.walls, self.faces) if parts)
 
 
 def search_space(scene: Scene, sets: Sequence[SampledSet]) -> SearchSpace:
@@ -69,15 +102,44 @@ def search_space(scene: Scene, sets: Sequence[SampledSet]) -> SearchSpace:
     )
 
 
-def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Parts:
-    """Allocate everything that the scene needs and bind its passes."""
+def assemble(
+    scene: Scene, sets: Sequence[SampledSet], launcher: Launcher, structures: StructureParts | None = None
+) -> Parts:
+    """Allocate everything that fluids and walls need and bind their passes; structures show the fluid their faces.
+
+    Raises SceneError if structures are too thin for the fluid.
+    """
+    sampled = sample_faces(scene, structures) if structures else None
+    assembly = _shared(scene, sets, sampled, launcher)
+    layout, arithmetic = assembly.layout, assembly.options.arithmetic
+    _fill_state(scene, sets, sampled, assembly)
+    sides = wp.zeros(max(layout.faces, 1), dtype=arithmetic.vector, device=launcher.device)
+    tables = Tables.of(layout)
+    search = _make_search(scene, assembly, tables, sides)
+    surface = make_wall_surface(arithmetic, _no_slip(scene, sets, sampled), launcher.device)
+    fluid = FluidModel(assembly, search.rows[FLUID], surface, scene)
+    walls = _make_walls(scene, sets, assembly, search, tables, surface, fluid) if layout.walls else None
+    faces = None
+    if structures and sampled and tables.face is not None:
+        part = surface.part(layout.walls, layout.faces)
+        place = WallRange(layout.first_face, layout.faces, search.rows[tables.face], part)
+        shared = (scene, sets, assembly, search, place)
+        faces = make_faces(*shared, structures, sampled, sides, fluid.react)
+    symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
+    followers = _followers(assembly, search, tables, fluid, walls, faces)
+    return Parts(assembly, search, tables, fluid, walls, faces, symmetry, followers)
+
+
+def _shared(
+    scene: Scene, sets: Sequence[SampledSet], faces: SampledFaces | None, launcher: Launcher
+) -> Assembly:
+    """What all models share."""
     arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
-    layout = _layout(scene, sets)
+    layout = _layout(scene, sets, len(faces.owner) if faces else 0)
     space = search_space(scene, sets)
-    motions = rigid_motions(scene)
     sound_speed = choose_sound_speed(scene, sets, largest_speed(scene, sets))
-    options = select_code(scene, arithmetic, space, has_walls=layout.walls > 0)
-    assembly = Assembly(
+    options = select_code(scene, arithmetic, space, has_walls=layout.solids > 0)
+    return Assembly(
         launcher=launcher,
         options=options,
         constants=fluid_constants(scene, options, space, sound_speed),
@@ -88,78 +150,96 @@ def assemble(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> Pa
         clock=wp.zeros(CLOCK_SIZE, dtype=wp.float64, device=launcher.device),
         state_law=STATE_LAWS[options.state],
     )
-    _fill_state(scene, sets, assembly)
-    search = _make_search(scene, assembly)
-    lists = Lists(fluid=search.rows[FLUID], wall=search.rows[WALL] if layout.walls else None)
+
+
+def _layout(scene: Scene, sets: Sequence[SampledSet], faces: int) -> Layout:
+    fluids = sum(len(s.position) for s in sets if s.kind == "fluid")
+    walls = sum(len(s.position) for s in sets if s.kind == "boundary")
+    images = images_of(scene, fluids)
+    return Layout(fluids=fluids + images, walls=walls, images=images, faces=faces)
+
+
+def _make_walls(
+    scene: Scene,
+    sets: Sequence[SampledSet],
+    assembly: Assembly,
+    search: NeighbourSearch,
+    tables: Tables,
+    surface: WallSurface,
+    fluid: FluidModel,
+) -> WallParts:
+    layout = assembly.layout
+    assert tables.wall is not None
+    part = surface.part(0, layout.walls)
+    place = WallRange(layout.fluids, layout.walls, search.rows[tables.wall], part)
+    motions = rigid_motions(scene)
+    by_index = {k: motions[s.name] for k, s in enumerate(sets) if s.name in motions}
+    motion = PrescribedMotion(assembly, place, by_index, len(sets))
+    mirror = _mirrored_walls(scene, sets, assembly, search, motion)
+    return WallParts(WallModel(assembly, place, "wall", fluid.react, mirror), motion)
+
+
+def _mirrored_walls(
+    scene: Scene,
+    sets: Sequence[SampledSet],
+    assembly: Assembly,
+    search: NeighbourSearch,
+    motion: PrescribedMotion,
+) -> MirroredWalls | None:
+    """The mirror points of the walls, where their method wants them."""
+    if assembly.options.wall != "modified_dynamic":
+        return None
+    period, boundaries = period_of(scene), [s for s in sets if s.kind == "boundary"]
+    ways = [mirror_ways(scene.boundaries[s.name], s.position, scene.spacing, period) for s in boundaries]
+    return MirroredWalls(assembly, search, assembly.vectors(np.concatenate(ways)), motion.poses)
+
+
+def _no_slip(scene: Scene, sets: Sequence[SampledSet], faces: SampledFaces | None) -> np.ndarray:
     boundaries = [s for s in sets if s.kind == "boundary"]
     flags = no_slip_flags(
         [scene.boundaries[s.name].slip == "no_slip" for s in boundaries],
         [len(s.position) for s in boundaries],
     )
-    surface = make_wall_surface(arithmetic, flags, launcher.device)
-    fluid = FluidModel(assembly, lists, surface, scene)
-    walls = None
-    if layout.walls:
-        mirror = _mirrored_walls(scene, boundaries, assembly, search)
-        walls = WallModel(assembly, lists, _by_index(motions, sets), len(sets), surface, fluid.react, mirror)
-    symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
-    return Parts(assembly, search, fluid, walls, symmetry, *_reordered(assembly, search, fluid, walls))
+    return np.concatenate([flags, faces.no_slip]) if faces else flags
 
 
-def _layout(scene: Scene, sets: Sequence[SampledSet]) -> Layout:
-    fluids = sum(len(s.position) for s in sets if s.kind == "fluid")
-    walls = sum(len(s.position) for s in sets if s.kind == "boundary")
-    images = images_of(scene, fluids)
-    return Layout(fluids=fluids + images, walls=walls, images=images)
-
-
-def _mirrored_walls(
-    scene: Scene, boundaries: Sequence[SampledSet], assembly: Assembly, search: NeighbourSearch
-) -> MirroredWalls | None:
-    """The mirror points of the walls, where their method wants them."""
-    if assembly.options.wall != "modified_dynamic":
-        return None
-    period = period_of(scene)
-    ways = [mirror_ways(scene.boundaries[s.name], s.position, scene.spacing, period) for s in boundaries]
-    return MirroredWalls(assembly, search, np.concatenate(ways))
-
-
-def _by_index(motions: dict, sets: Sequence[SampledSet]) -> dict:
-    return {k: motions[s.name] for k, s in enumerate(sets) if s.name in motions}
-
-
-def _make_search(scene: Scene, assembly: Assembly) -> NeighbourSearch:
+def _make_search(scene: Scene, assembly: Assembly, tables: Tables, sides: wp.array) -> NeighbourSearch:
     layout, radius = assembly.layout, scene.support_radius
     ranges = [(0, layout.first_image)]
-    walls: list[list[int]] = []
+    solids = [table for table in (tables.wall, tables.face) if table is not None]
     if layout.walls:
         ranges.append((layout.fluids, layout.walls))
-        walls = [[WALL]]
-    fluid = [FLUID]
+    if layout.faces:
+        ranges.append((layout.first_face, layout.faces))
     if layout.images:
-        fluid = [FLUID, len(ranges)]
         ranges.append((layout.first_image, layout.images))
-    pairs = [(FLUID, [fluid, *walls]), *((WALL, [fluid]) for _ in walls)]
+    fluid = [FLUID] if tables.image is None else [FLUID, tables.image]
+    of_fluid = [fluid, solids] if solids else [fluid]
     return NeighbourSearch(
         assembly.launcher,
         assembly.options.arithmetic,
         assembly.space,
         ranges,
         [first == 0 for first, _ in ranges],
-        pairs,
+        [(FLUID, of_fluid), *((solid, [fluid]) for solid in solids)],
         radius=radius,
         skin=scene.numerics.skin * radius,
         spacing=scene.spacing,
         position=assembly.state.position,
+        sides={} if tables.face is None else {tables.face: sides},
     )
 
 
-def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) -> None:
+def _fill_state(
+    scene: Scene, sets: Sequence[SampledSet], faces: SampledFaces | None, assembly: Assembly
+) -> None:
+    """The initial state of fluids and walls; faces get their places and velocities from their owners later."""
     fluid = material(scene)
     state, c = assembly.state, assembly.constants
-    position = np.concatenate([s.position for s in sets])
-    velocity = np.concatenate([s.velocity for s in sets])
-    pressure = np.concatenate([s.pressure for s in sets])
+    shown = [s for s in sets if s.kind != "structure"]
+    position = np.concatenate([s.position for s in shown])
+    velocity = np.concatenate([s.velocity for s in shown])
+    pressure = np.concatenate([s.pressure for s in shown])
     deviation = assembly.density_deviation(pressure)
     volume = float(c.mass) / (fluid.density + deviation)
     fields = {
@@ -167,7 +247,7 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
         "velocity_volume": np.column_stack([velocity, volume]),
         "density_deviation": deviation,
         "id": np.arange(len(position)),
-        "set_index": np.repeat(np.arange(len(sets)), [len(s.position) for s in sets]),
+        "set_index": np.repeat(np.arange(len(shown)), [len(s.position) for s in shown]),
     }
     layout = assembly.layout
     for name, values in fields.items():
@@ -175,19 +255,31 @@ def _fill_state(scene: Scene, sets: Sequence[SampledSet], assembly: Assembly) ->
         write_array(array, values[: layout.first_image])
         if layout.walls:
             write_array(array[layout.fluids :], values[layout.first_image :])
+    if faces:
+        write_array(state.set_index[layout.first_face :], faces.set_index)
+        write_array(state.id[layout.first_face :], len(position) + faces.owner)
 
 
-def _reordered(
-    assembly: Assembly, search: NeighbourSearch, fluid: FluidModel, walls: WallModel | None
-) -> tuple[tuple[Reordered, ...], tuple[Reordered, ...]]:
+def _followers(
+    assembly: Assembly,
+    search: NeighbourSearch,
+    tables: Tables,
+    fluid: FluidModel,
+    walls: WallParts | None,
+    faces: FaceParts | None,
+) -> dict[int, tuple[Reordered, ...]]:
     def follow(array: wp.array, table: int, first: int) -> Reordered:
         return Reordered(assembly.launcher, array, search.tables[table], first)
 
     state = [array for _, array in arrays_of(assembly.state)]
-    fluid_arrays = tuple(follow(array, FLUID, 0) for array in (*state, *fluid.own_arrays.values()))
-    if walls is None:
-        return fluid_arrays, ()
     records = [array for _, array in arrays_of(assembly.scratch)]
-    shared = [follow(array, WALL, assembly.layout.fluids) for array in (*state, *records)]
-    own = [follow(array, WALL, 0) for array in walls.own_arrays.values()]
-    return fluid_arrays, (*shared, *own)
+    followers = {FLUID: [follow(array, FLUID, 0) for array in (*state, *fluid.own_arrays.values())]}
+    if walls and tables.wall is not None:
+        own = (*walls.model.own_arrays.values(), *walls.motion.own_arrays.values())
+        shared = [follow(array, tables.wall, assembly.layout.fluids) for array in (*state, *records)]
+        followers[tables.wall] = [*shared, *(follow(array, tables.wall, 0) for array in own)]
+    if faces and tables.face is not None:
+        own = (*faces.model.own_arrays.values(), *faces.faces.own_arrays.values())
+        shared = [follow(array, tables.face, assembly.layout.first_face) for array in (*state, *records)]
+        followers[tables.face] = [*shared, *(follow(array, tables.face, 0) for array in own)]
+    return {table: tuple(arrays) for table, arrays in followers.items()}

@@ -44,7 +44,7 @@ def _fields(parts: Parts) -> list[dict[str, Any]]:
 
 
 def _passes(parts: Parts) -> list[str]:
-    fluid, walls = parts.fluid.passes, parts.walls
+    fluid, walls = parts.fluid.passes, parts.walls.model if parts.walls else None
     passes = ["choose step", "begin step", *fluid, "survey"]
     if parts.symmetry:
         passes.insert(passes.index("accelerate"), "mirror")
@@ -56,13 +56,15 @@ def _passes(parts: Parts) -> list[str]:
     passes.insert(passes.index("accelerate"), imposed)
     if walls.method == "dynamic":
         passes.insert(-1, "update wall density")
-    if walls.moving:
+    if parts.walls and parts.walls.motion.moving:
         passes.insert(1, "move walls")
     return passes
 
 
 def _pairs(parts: Parts) -> list[str]:
-    return ["fluid - fluid"] if parts.walls is None else ["fluid - fluid", "fluid - wall", "wall - fluid"]
+    walls = ["fluid - wall", "wall - fluid"] if parts.walls else []
+    structures = ["fluid - structure", "structure - fluid"] if parts.faces else []
+    return ["fluid - fluid", *walls, *structures]
 
 
 def _step_limits(scene: Scene, sound_speed: float) -> dict[str, float]:

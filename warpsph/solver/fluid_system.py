@@ -19,6 +19,7 @@ from warpsph.solver.describe import describe
 from warpsph.solver.guards import check_state
 from warpsph.solver.ledger import Ledger, sum_up
 from warpsph.solver.step import Stepper
+from warpsph.solver.structure_assembly import StructureParts
 from warpsph.solver.system import StepReport, in_order
 
 ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
@@ -37,17 +38,25 @@ NOTABLE_COMPRESSION = 0.05
 class FluidSystem:
     """Fluids and walls of a scene. Raises SceneError if they cannot be assembled."""
 
-    def __init__(self, scene: Scene, sampled: Sequence[SampledSet], launcher: Launcher) -> None:
+    def __init__(
+        self,
+        scene: Scene,
+        sampled: Sequence[SampledSet],
+        launcher: Launcher,
+        structures: StructureParts | None = None,
+    ) -> None:
+        """`structures` act on the fluid; what advances them is elsewhere."""
         self._scene = scene
         self._sampled = sampled
-        self.parts = assemble(scene, sampled, launcher)
+        self._shown = [s for s in sampled if s.kind != "structure"]
+        self.parts = assemble(scene, sampled, launcher, structures)
         self._flow_fields = FlowFields(self.parts.assembly, self.parts.search.rows[FLUID])
-        self._stepper = Stepper(scene, self.parts)
-        self._stepper.start()
+        self.stepper = Stepper(scene, self.parts)
+        self.stepper.start()
 
     @property
     def time(self) -> float:
-        return self._stepper.time
+        return self.stepper.time
 
     @property
     def particle_count(self) -> int:
@@ -55,7 +64,7 @@ class FluidSystem:
 
     @property
     def removed_count(self) -> int:
-        return self._stepper.removed
+        return self.stepper.removed
 
     @property
     def list_builds(self) -> int:
@@ -69,12 +78,12 @@ class FluidSystem:
     @property
     def sets(self) -> tuple[tuple[str, str, int], ...]:
         index = self._host("set_index")
-        return tuple((s.name, s.kind, int(np.sum(index == k))) for k, s in enumerate(self._sampled))
+        return tuple((s.name, s.kind, int(np.sum(index == k))) for k, s in enumerate(self._shown))
 
     @property
     def extremes(self) -> Mapping[str, float]:
         """Largest speed [m/s] and |rho/rho0 - 1|."""
-        return {"speed": self._stepper.speed, "compression": self._stepper.compression}
+        return {"speed": self.stepper.speed, "compression": self.stepper.compression}
 
     @property
     def fields(self) -> frozenset[str]:
@@ -86,22 +95,26 @@ class FluidSystem:
         return {name: getattr(state, name) for name in ARRAYS}
 
     def step(self, step_count: int) -> StepReport:
-        report = self._stepper.step()
-        check_state(self._stepper, self.parts, self._sampled, step_count, report)
+        report = self.stepper.step()
+        self.check(step_count, report)
         return report
 
+    def check(self, step_count: int, report: StepReport) -> None:
+        """Raise SimulationDiverged if the state that a step began with is out of range."""
+        check_state(self.stepper, self.parts, self._sampled, step_count, report)
+
     def set_target(self, time: float) -> None:
-        self._stepper.set_clock(TARGET=time)
+        self.stepper.set_clock(TARGET=time)
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
         """Fields: position, velocity, pressure, volume; of fluids also density, mass, vorticity, free_surface; of walls
         also force."""
-        self._stepper.synchronise()
+        self.stepper.synchronise()
         columns = self._columns({"position", *(USUAL_FIELDS if fields is None else fields)})
         index = np.array(self._host("set_index"))
         index[self._alive : self.parts.assembly.layout.fluids] = -1
         return tuple(
-            self._set_frame(k, sampled, columns, index, ordered) for k, sampled in enumerate(self._sampled)
+            self._set_frame(k, sampled, columns, index, ordered) for k, sampled in enumerate(self._shown)
         )
 
     def ledger(self) -> Ledger:
@@ -135,15 +148,15 @@ class FluidSystem:
             "clock": np.array(host_view(self.parts.assembly.clock)),
             "time": self.time,
             "alive": self._alive,
-            "removed": self._stepper.removed,
+            "removed": self.stepper.removed,
         }
 
     def load(self, saved: Mapping[str, Any]) -> None:
         for name, array in self._evolving_arrays():
             write_array(array, saved[name])
         self.parts.search.tables[FLUID].count = int(saved["alive"])
-        self._stepper.removed = int(saved["removed"])
-        self._stepper.resume(np.asarray(saved["clock"]))
+        self.stepper.removed = int(saved["removed"])
+        self.stepper.resume(np.asarray(saved["clock"]))
 
     @property
     def _alive(self) -> int:
@@ -157,7 +170,12 @@ class FluidSystem:
         yield "listed_position", self.parts.search.listed_position
         yield from self.parts.fluid.own_arrays.items()
         if self.parts.walls:
-            yield from self.parts.walls.own_arrays.items()
+            yield from self.parts.walls.model.own_arrays.items()
+            yield from self.parts.walls.motion.own_arrays.items()
+        if self.parts.faces:
+            yield from self.parts.faces.model.own_arrays.items()
+            yield from self.parts.faces.faces.own_arrays.items()
+            yield from self.parts.faces.faces.structure_arrays.items()
 
     def _columns(self, names: set[str]) -> dict[str, np.ndarray]:
         a = self.parts.assembly
@@ -182,7 +200,7 @@ class FluidSystem:
         layout = self.parts.assembly.layout
         force = np.zeros((layout.total, self._scene.dimension))
         if self.parts.walls:
-            force[layout.fluids :] = host_view(self.parts.walls.react())
+            force[layout.fluids : layout.first_face] = host_view(self.parts.walls.model.react())
         return force
 
     def _set_frame(

@@ -13,6 +13,7 @@ from warpsph.particles.launch import Launcher
 from warpsph.sampling import sample
 from warpsph.scene.errors import SceneError
 from warpsph.scene.schema import Scene
+from warpsph.solver.coupled_system import CoupledSystem
 from warpsph.solver.fluid_system import FluidSystem
 from warpsph.solver.ledger import Ledger
 from warpsph.solver.schedule import SAME_TIME, frame_times
@@ -215,7 +216,13 @@ class Simulation:
 
 def make_system(scene: Scene, launcher: Launcher) -> System:
     """Sample the particles of a scene and assemble what advances them. Raises SceneError."""
-    kind = FluidSystem if scene.fluids else StructureSystem
+    kind = (
+        CoupledSystem
+        if scene.fluids and scene.structures
+        else FluidSystem
+        if scene.fluids
+        else StructureSystem
+    )
     return kind(scene, sample(scene), launcher)
 
 

@@ -15,10 +15,10 @@ from warpsph_kernels.clock import BLOCK, LIMITS, StepLimits, make_clock_kernels
 
 from warpsph.particles.launch import Pass
 from warpsph.particles.state import host_view
-from warpsph.physics.boundary import WallModel
+from warpsph.physics.faces import NOW
 from warpsph.physics.fluid import material, padded, smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
-from warpsph.solver.assemble import FLUID, WALL, Parts
+from warpsph.solver.assemble import FLUID, Parts, WallParts
 from warpsph.solver.system import StepReport
 
 NO_LIMIT = 1.0e30
@@ -28,7 +28,8 @@ class Stepper:
     """Advances the parts of a run."""
 
     def __init__(self, scene: Scene, parts: Parts) -> None:
-        self._fluid, self._walls, self._search = parts.fluid, parts.walls, parts.search
+        self._fluid, self._walls, self._faces = parts.fluid, parts.walls, parts.faces
+        self._solids, self._search = parts.solids, parts.search
         self._symmetry = parts.symmetry
         self._parts = parts
         self._clock = parts.assembly.clock
@@ -39,33 +40,40 @@ class Stepper:
     def start(self, time: float = 0.0) -> None:
         """Place walls, make the first lists, and find the density rate of the initial velocity."""
         self.set_clock(TIME=time, STEP=0.0, TARGET=math.inf)
-        if self._walls:
-            self._walls.place(time)
-        self._search.take_positions(self._moving_tables(all_tables=True))
+        self.place_solids(time)
+        self.take_positions(all_tables=True)
         self.make_lists(all_tables=True)
         self._fluid.synchronise()
         self.mirror_pressure()
         if self._walls:
             self.find_wall_surface(self._walls)
-            self._walls.place(time)
-            self._walls.start()
+        self.place_solids(time)
+        for solid in self._solids:
+            solid.start()
         self.synchronise()
         self._fluid.update_density()
         self.update_wall_density()
         self.survey()
 
-    def find_wall_surface(self, walls: WallModel) -> None:
+    def place_solids(self, time: float) -> None:
+        """Place walls for a time [s], and faces where their structures are."""
+        if self._walls:
+            self._walls.motion.place(time)
+        if self._faces:
+            self._faces.faces.place(NOW)
+
+    def find_wall_surface(self, walls: WallParts) -> None:
         """Find the normals that keep fluid out of the walls, where the wall method needs them."""
-        if self._parts.assembly.options.has_barrier:
-            rows = self._search.list_once(WALL, WALL)
-            walls.find_surface(rows, self._search.listed_position, self._spacing)
+        table = self._parts.tables.wall
+        if self._parts.assembly.options.has_barrier and table is not None:
+            rows = self._search.list_once(table, table)
+            walls.motion.find_surface(rows, self._search.listed_position, self._spacing)
 
     def resume(self, clock: np.ndarray) -> None:
         """Go on from a restored state with the lists, the order and the survey that it had."""
         self._clock.assign(clock)
         self._host_clock = host_view(self._clock)
-        if self._walls:
-            self._walls.place(self.time)
+        self.place_solids(self.time)
         self.forget_removed()
         self.make_lists(all_tables=True)
         self.synchronise()
@@ -74,20 +82,31 @@ class Stepper:
     def step(self) -> StepReport:
         """Advance by one variable step."""
         report = self.choose_step()
-        if self.lists_expire(report.dt):
-            self.renew_lists()
+        self.keep_lists(report.dt)
         self.move_walls(self.time - 0.5 * report.dt)
+        self.find_forces()
+        self.advance()
+        self.move_walls(self.time)
+        self.find_densities()
+        return report
+
+    def find_forces(self) -> None:
+        """Drift over half a step, and sum the forces there."""
         self._fluid.begin_step()
         self.mirror_pressure()
         self.impose_walls()
         self._fluid.accelerate()
+
+    def advance(self) -> None:
+        """Kick over the whole step, and drift over its second half."""
         self._fluid.kick_and_drift()
         self.mirror_density()
-        self.move_walls(self.time)
+
+    def find_densities(self) -> None:
+        """Find density rates at the end of the step, densities with them, and the extremes of the state."""
         self._fluid.update_density()
         self.update_wall_density()
         self.survey()
-        return report
 
     def choose_step(self) -> StepReport:
         """Let the device choose the step from the survey of the state, and read it."""
@@ -99,8 +118,10 @@ class Stepper:
     def survey(self) -> None:
         """Find the extremes of the state."""
         self._survey_fluid.run(self._fluid_blocks)
-        if self._walls and self._walls.moving:
+        if self._walls and self._walls.motion.moving:
             self._survey_walls.run(self._wall_blocks)
+        if self._faces:
+            self._survey_faces.run(self._face_blocks)
 
     def mirror_pressure(self) -> None:
         """Show the fluid its images with their pressures."""
@@ -115,17 +136,22 @@ class Stepper:
     def move_walls(self, time: float) -> None:
         """Place walls that move as prescribed for a time [s]."""
         if self._walls:
-            self._walls.move(time)
+            self._walls.motion.move(time)
 
     def impose_walls(self) -> None:
-        """Set what the fluid sees at the walls."""
-        if self._walls:
-            self._walls.impose()
+        """Set what the fluid sees at walls and structures."""
+        for solid in self._solids:
+            solid.impose()
 
     def update_wall_density(self) -> None:
-        """Advance the density of walls that have one."""
-        if self._walls:
-            self._walls.update_density()
+        """Advance the density of walls and structures that have one."""
+        for solid in self._solids:
+            solid.update_density()
+
+    def keep_lists(self, dt: float) -> None:
+        """Make new neighbour lists if the present ones do not last for the step [s]."""
+        if self.lists_expire(dt):
+            self.renew_lists()
 
     def lists_expire(self, dt: float) -> bool:
         """Tell whether a particle may outrun the neighbour lists within the step."""
@@ -137,26 +163,35 @@ class Stepper:
         """Sort the particles and list their neighbours anew."""
         if self._symmetry:
             self._symmetry.reflect()
-        self._search.take_positions(self._moving_tables())
+        self.take_positions()
         self.make_lists()
+
+    def take_positions(self, all_tables: bool = False) -> None:
+        """Note the positions, and the sides of structures, from which the next lists are made."""
+        self._search.take_positions(self._moving_tables(all_tables))
+        if self._faces:
+            self._faces.faces.turn_sides()
 
     def make_lists(self, all_tables: bool = False) -> None:
         """Sort and list from the positions last taken."""
         moving = self._moving_tables(all_tables)
         capacities = [rows.capacity for rows in self._search.rows]
         before = self._fluid.count
-        self.removed += self._search.sort(FLUID, self._parts.fluid_arrays)
+        self.removed += self._search.sort(FLUID, self._parts.followers[FLUID])
         if self._fluid.count < before:
             self.forget_removed()
-        if self._walls and moving[WALL]:
-            self._search.sort(WALL, self._parts.wall_arrays)
+        for table in (self._parts.tables.wall, self._parts.tables.face):
+            if table is not None and moving[table]:
+                self._search.sort(table, self._parts.followers[table])
+        if self._faces:
+            self._faces.faces.find_places()
         if self._symmetry:
             self._symmetry.make_images()
         self._search.list_neighbours()
         if capacities != [rows.capacity for rows in self._search.rows]:
             self._fluid.bind_lists()
-            if self._walls:
-                self._walls.bind_lists()
+            for solid in self._solids:
+                solid.bind_lists()
 
     def forget_removed(self) -> None:
         """Survey only the particles that are alive: those that left must not limit the step."""
@@ -167,8 +202,8 @@ class Stepper:
         self._fluid.synchronise()
         self.mirror_pressure()
         self.mirror_density()
-        if self._walls:
-            self._walls.synchronise()
+        for solid in self._solids:
+            solid.synchronise()
 
     @property
     def time(self) -> float:
@@ -203,8 +238,9 @@ class Stepper:
 
     def _moving_tables(self, all_tables: bool = False) -> list[bool]:
         """Which tables have positions of their own that may have changed; images have none."""
-        walls = [all_tables or self._walls.moving] if self._walls else []
-        return [True, *walls, *([False] if self._symmetry else [])]
+        walls = [all_tables or self._walls.motion.moving] if self._walls else []
+        faces = [True] if self._faces else []
+        return [True, *walls, *faces, *([False] if self._symmetry else [])]
 
     def _bind_clock(self, scene: Scene) -> None:
         a = self._parts.assembly
@@ -212,7 +248,8 @@ class Stepper:
         kernels = make_clock_kernels(arithmetic, a.options.state)
         self._fluid_blocks = -(-a.layout.fluids // BLOCK)
         self._wall_blocks = -(-a.layout.walls // BLOCK)
-        rows = max(self._fluid_blocks + self._wall_blocks, 1)
+        self._face_blocks = -(-a.layout.faces // BLOCK)
+        rows = max(self._fluid_blocks + self._wall_blocks + self._face_blocks, 1)
         extremes = wp.zeros((rows, 5), dtype=arithmetic.real, device=a.launcher.device)
 
         def bind_survey(first: int, count: int, first_row: int) -> Pass:
@@ -234,6 +271,8 @@ class Stepper:
         self._bind_survey = bind_survey
         self._survey_fluid = bind_survey(0, a.layout.first_image, 0)
         self._survey_walls = bind_survey(a.layout.fluids, a.layout.walls, self._fluid_blocks)
+        first_row = self._fluid_blocks + self._wall_blocks
+        self._survey_faces = bind_survey(a.layout.first_face, a.layout.faces, first_row)
         limits = step_limits(scene, float(a.constants.sound_speed))
         self._choose = a.launcher.bind(
             "choose step", kernels.choose_step, rows, extremes, limits, self._clock

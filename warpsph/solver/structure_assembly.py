@@ -108,6 +108,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         loads=len(loads),
         damped=any(s.damping > 0.0 for s in scene.structures.values()) or is_static(scene),
         contact=scene.contact is not None,
+        immersed=bool(scene.fluids),
         moving_walls=bool(wall_motions),
         thin=bool(bonds.thin.any()),
         scattered=gradients is not None,

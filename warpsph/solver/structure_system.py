@@ -33,11 +33,12 @@ NOTABLE_PENETRATION = 0.5
 
 
 class StructureSystem:
-    """Structures of a scene without fluids. Raises SceneError if they cannot be assembled."""
+    """Structures of a scene, with the walls that they touch. Raises SceneError if they cannot be assembled."""
 
     def __init__(self, scene: Scene, sampled: Sequence[SampledSet], launcher: Launcher) -> None:
         self._scene = scene
-        self._sampled = sampled
+        # Beside fluids walls belong to them.
+        self._shown = [s for s in sampled if s.kind == "structure" or not scene.fluids]
         self.parts: StructureParts = assemble_structures(scene, sampled, launcher)
         make = RelaxationStepper if is_static(scene) else StructureStepper
         self.stepper: StructureStepper = make(scene, self.parts)
@@ -50,7 +51,7 @@ class StructureSystem:
 
     @property
     def particle_count(self) -> int:
-        return sum(len(s.position) for s in self._sampled)
+        return sum(len(s.position) for s in self._shown)
 
     @property
     def removed_count(self) -> int:
@@ -69,7 +70,7 @@ class StructureSystem:
 
     @property
     def sets(self) -> tuple[tuple[str, str, int], ...]:
-        return tuple((s.name, s.kind, len(s.position)) for s in self._sampled)
+        return tuple((s.name, s.kind, len(s.position)) for s in self._shown)
 
     @property
     def extremes(self) -> Mapping[str, float]:
@@ -89,7 +90,7 @@ class StructureSystem:
         except NotConverged as error:
             raise self._diverged(step_count, 0, str(error), math.nan) from error
         if self.stepper.failed:
-            raise self._fault(step_count + report.count)
+            raise self.fault(step_count + report.count)
         return report
 
     def set_target(self, time: float) -> None:
@@ -97,7 +98,7 @@ class StructureSystem:
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
         """See `StructureFields.names`; the particles of a structure always come in the order of their ids."""
-        return self._fields.frame_sets(self._sampled, fields)
+        return self._fields.frame_sets(self._shown, fields)
 
     def ledger(self) -> Ledger:
         """Totals over all structures, with strain, hourglass and contact energy, work and dissipation."""
@@ -191,7 +192,7 @@ class StructureSystem:
             write_array(array, saved[name])
         self.stepper.load(saved)
 
-    def _fault(self, step: int) -> SimulationDiverged:
+    def fault(self, step: int) -> SimulationDiverged:
         """What has stopped the stepper, which has looked after every step."""
         stepper = self.stepper
         ratio = -stepper.extremes["flattening"]

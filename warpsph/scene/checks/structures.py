@@ -36,6 +36,7 @@ def structure_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
         yield from vector_field_problems(f"{key}.displacement", structure.displacement, scene.dimension)
         if structure.material.law not in MATERIAL_LAWS:
             yield unknown_name(f"{key}.material.law", "law", structure.material.law, MATERIAL_LAWS)
+        yield from _slip_problems(structure, scene, names, key)
         yield from _plane_problems(structure, scene.dimension, key)
         for name_of_clamp, clamp in structure.clamps.items():
             yield from _clamp_problems(clamp, scene.dimension, f"{key}.clamps.{name_of_clamp}")
@@ -46,14 +47,35 @@ def structure_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
 def _company_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
     if not names.fluids and not names.structures:
         yield Problem.at("fluids", "the scene has neither fluids nor structures", "at least one of them")
-    if scene.fluids and scene.structures:
-        message = "fluids and structures in one scene would pass through each other: they are not coupled yet"
-        yield Problem.at("structures", message, "fluids, or structures")
+    yield from _coupling_problems(scene, names)
     if scene.contact is not None and not names.structures:
         yield Problem.at("contact", "there is no structure to be touched", "contact beside structures")
     if scene.contact is not None and (scene.domain.periodic or scene.domain.symmetry):
         message = "contact does not reach over periodic faces and planes of symmetry yet"
         yield Problem.at("contact", message, "no contact, or neither periodic axes nor symmetry")
+
+
+def _coupling_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
+    if "coupling" in scene.model_fields_set and not (names.fluids and names.structures):
+        yield Problem.at("coupling", "there is nothing to couple", "coupling beside fluids and structures")
+    if not (scene.fluids and scene.structures):
+        return
+    if scene.domain.symmetry:
+        message = "structures have no images beyond planes of symmetry yet"
+        yield Problem.at("domain.symmetry", message, "no planes where fluids and structures meet")
+    if scene.numerics.structure.solution.type == "static":
+        message = "fluids move in time, and structures in them have to"
+        yield Problem.at("numerics.structure.solution.type", message, "dynamic", "static")
+
+
+def _slip_problems(structure: Structure, scene: Scene, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    if structure.slip == "free_slip":
+        return
+    if not names.fluids:
+        yield Problem.at(f"{key}.slip", "there is no fluid to stick to it", "free_slip", structure.slip)
+    elif scene.numerics.viscosity.type == "none":
+        message = "a fluid without viscosity cannot stick to a structure"
+        yield Problem.at(f"{key}.slip", message, "free_slip, or a numerics.viscosity", structure.slip)
 
 
 def _plane_problems(structure: Structure, dimension: int, key: str) -> Iterator[Problem]:

@@ -1,0 +1,201 @@
+"""Faces of structures: where the fluid sees structures, and the way of its forces to them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import warp as wp
+from warpsph_kernels.faces import make_face_kernels
+
+from warpsph.particles.launch import Pass
+from warpsph.particles.state import host_view
+from warpsph.physics.assembly import Assembly, WallRange
+from warpsph.physics.structure import StructureModel
+from warpsph.sampling.faces import Faces
+
+HALF_STEP, NOW = 0.5, 0.0
+"""How many steps ahead of the structures faces are placed."""
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What the fluid sees of the motion of n structure particles: means over its last step, in double precision.
+
+    velocity [m/s]; acceleration [m/s^2], relaxed; displacement_before [m] and velocity_before [m/s]: at its beginning.
+    """
+
+    velocity: wp.array
+    acceleration: wp.array
+    displacement_before: wp.array
+    velocity_before: wp.array
+
+
+class FaceModel:
+    """The passes between structures and the fluid.
+
+    Args:
+        faces: of all structures together; their owners are particles of `structures`.
+        mass: of each structure particle (n,) [kg].
+        relaxation: how fast the acceleration that the fluid sees follows that of its structure (n,) [1].
+        side, way: vectors of each face, in the order of the faces, that this model keeps up to date: the side on which
+            it is listed, and the way to its mirror point [m] (of a single entry where the wall method has none).
+        force: of the fluid on each face [N], in the order of the faces.
+    """
+
+    def __init__(
+        self,
+        assembly: Assembly,
+        walls: WallRange,
+        structures: StructureModel,
+        faces: Faces,
+        mass: np.ndarray,
+        relaxation: np.ndarray,
+        side: wp.array,
+        way: wp.array,
+        force: wp.array,
+    ) -> None:
+        self._assembly, self._walls, self._structures = assembly, walls, structures
+        self._kernels = make_face_kernels(assembly.options, structures.options.moving_clamps)
+        arithmetic, device = assembly.options.arithmetic, assembly.launcher.device
+
+        def array(values: np.ndarray, dtype: Any, ndim: int = 1) -> wp.array:
+            return wp.array(np.ascontiguousarray(values), dtype=dtype, ndim=ndim, device=device)
+
+        self.face = array(np.arange(walls.count), wp.int32)
+        self.side, self._way = side, way
+        self._owner = array(faces.owner, wp.int32)
+        self._side_at_rest = array(faces.side, arithmetic.vector)
+        self._normal_at_rest = array(faces.normal, arithmetic.vector)
+        self._way_at_rest = array(faces.way, arithmetic.vector)
+        self._place_of = wp.zeros(max(walls.count, 1), dtype=wp.int32, device=device)
+        self._faces_of = array(_faces_by_owner(faces.owner, structures.count), wp.int32, ndim=2)
+        self._mass = array(mass, arithmetic.real)
+        self._relaxation = array(relaxation, wp.float64)
+        arrays = (wp.zeros(structures.count, dtype=arithmetic.point, device=device) for _ in range(4))
+        self.motion = Motion(*arrays)
+        wp.copy(self.motion.velocity, structures.state.velocity)
+        self._bind(force)
+
+    @property
+    def own_arrays(self) -> dict[str, wp.array]:
+        """Arrays of shape (faces,) that follow the order of the faces and belong into a checkpoint."""
+        return {"face": self.face, "face_side": self.side}
+
+    @property
+    def structure_arrays(self) -> dict[str, wp.array]:
+        """Arrays of shape (structure particles,) that belong into a checkpoint."""
+        return {
+            "seen_velocity": self.motion.velocity,
+            "seen_acceleration": self.motion.acceleration,
+            "fluid_force": self._structures.scratch.fluid_force,
+        }
+
+    def turn_sides(self) -> None:
+        """Bring the sides, on which faces are listed next, to the present shape of the structures."""
+        self._turn_sides.run(self._walls.count)
+
+    def find_places(self) -> None:
+        """Note where each face is after the last sort."""
+        self._find_places.run(self._walls.count)
+
+    def place(self, ahead: float) -> None:
+        """Put the faces where their owners are, or will be half a step later."""
+        self._place[ahead].run(self._walls.count)
+
+    def push(self) -> None:
+        """Hand the forces on the faces to the structures, for all of their coming steps."""
+        self._push.run(self._structures.count)
+
+    def keep_motion(self) -> None:
+        """Remember where the structures are before they go on."""
+        wp.copy(self.motion.displacement_before, self._structures.state.displacement)
+        wp.copy(self.motion.velocity_before, self._structures.state.velocity)
+
+    def note_motion(self) -> None:
+        """Find the mean motion since `keep_motion`."""
+        self._note_motion.run(self._structures.count)
+
+    def first_faces(self, values: np.ndarray) -> np.ndarray:
+        """Of values on the faces in their present order (faces, ...), those of each structure particle's first face."""
+        return values[host_view(self._place_of)[host_view(self._faces_of)[:, 0]]]
+
+    def sums(self, values: np.ndarray) -> np.ndarray:
+        """Of values on the faces in their present order (faces, dim), the sums over each structure particle's faces."""
+        second = host_view(self._faces_of)[:, 1]
+        others = values[host_view(self._place_of)[second]]
+        return self.first_faces(values) + np.where((second >= 0)[:, None], others, 0.0)
+
+    def _bind(self, force: wp.array) -> None:
+        a, s, walls, kernels = self._assembly, self._structures, self._walls, self._kernels
+        bind, state, scratch = a.launcher.bind, a.state, a.scratch
+        shape = (s.scratch.gradient, s.reference.clamp, s.clock, s.scratch.prescriptions)
+        self._turn_sides = bind(
+            "turn sides", kernels.turn_sides, self.face, self._owner, self._side_at_rest, *shape, self.side
+        )
+        self._find_places = bind("sort", kernels.find_places, self.face, self._place_of)
+        point = a.options.arithmetic.point
+
+        def bind_place(ahead: float) -> Pass:
+            return bind(
+                "place faces",
+                kernels.place,
+                a.clock,
+                wp.float64(ahead),
+                walls.first,
+                a.constants.wall_volume,
+                a.origin,
+                point(*a.space.low),
+                point(*a.space.period),
+                self.face,
+                self._owner,
+                self._normal_at_rest,
+                self._way_at_rest,
+                s.reference.position,
+                s.state.displacement,
+                *shape,
+                self.motion.velocity,
+                self.motion.acceleration,
+                state.position,
+                state.velocity_volume,
+                scratch.position_pressure,
+                scratch.position_density,
+                state.acceleration,
+                walls.surface.normal,
+                self._way,
+            )
+
+        self._place = {ahead: bind_place(ahead) for ahead in (NOW, HALF_STEP)}
+        self._push = bind(
+            "push structures",
+            kernels.push,
+            self._faces_of,
+            self._place_of,
+            force,
+            self._mass,
+            s.scratch.fluid_force,
+            s.state.acceleration,
+        )
+        self._note_motion = bind(
+            "note motion",
+            kernels.note_motion,
+            a.clock,
+            self._relaxation,
+            self.motion.displacement_before,
+            self.motion.velocity_before,
+            s.state.displacement,
+            s.state.velocity,
+            self.motion.velocity,
+            self.motion.acceleration,
+        )
+
+
+def _faces_by_owner(owner: np.ndarray, count: int) -> np.ndarray:
+    """Numbers of the first and the second face of each particle (count, 2), -1 where there is none."""
+    faces = np.full((count, 2), -1)
+    first, index = np.unique(owner, return_index=True)
+    faces[first, 0] = index
+    second = np.setdiff1d(np.arange(len(owner)), index)
+    faces[owner[second], 1] = second
+    return faces

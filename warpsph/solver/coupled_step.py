@@ -1,0 +1,87 @@
+"""One step of fluids and structures together, as a page of verbs.
+
+The fluid makes one step of its own size; structures make as many within it as they need. The force between them is
+found once, where the fluid finds its own, in the middle of its step, and both sides receive it over the whole step: momentum is
+conserved to rounding. The fluid sees the means of the structures' velocity and acceleration over their steps (Zhang,
+Rezavand & Hu 2021).
+"""
+
+from __future__ import annotations
+
+import math
+
+from warpsph.physics.faces import HALF_STEP, NOW
+from warpsph.scene.schema import Scene
+from warpsph.solver.face_assembly import FaceParts
+from warpsph.solver.step import Stepper
+from warpsph.solver.structure_step import StructureStepper
+from warpsph.solver.system import StepReport
+
+GRADE = 1.05
+"""Ratio of two sizes between which the step does not tell a difference, so that it seldom changes: for the fastest waves
+of a structure a step that goes to and fro is a source of energy."""
+
+
+class CoupledStepper:
+    """Advances fluids and structures in time; both have been started."""
+
+    def __init__(self, scene: Scene, fluid: Stepper, structure: StructureStepper, parts: FaceParts) -> None:
+        sub_steps = scene.coupling.sub_steps
+        self._fluid, self._structure = fluid, structure
+        self._walls, self._faces = parts.model, parts.faces
+        self._most_sub_steps = math.inf if sub_steps == "auto" else sub_steps
+        self.target = math.inf
+        self.sub_steps = 0
+
+    def step(self) -> StepReport:
+        """Advance by one step of the fluid."""
+        report = self.choose_step()
+        self._fluid.keep_lists(report.dt)
+        self._fluid.move_walls(self._fluid.time - 0.5 * report.dt)
+        self._faces.place(HALF_STEP)
+        self._fluid.find_forces()
+        self.push_structures()
+        self._fluid.advance()
+        self.advance_structures()
+        self._fluid.move_walls(self._fluid.time)
+        self._faces.place(NOW)
+        self._fluid.find_densities()
+        return report
+
+    def choose_step(self) -> StepReport:
+        """As long as the fluid allows, and as the structures do where their steps are counted.
+
+        All steps up to the time to land on have one size, unless the limit changes meanwhile.
+        """
+        begin = self._fluid.time
+        dt, limit = self._longest_step()
+        left = self.target - begin
+        if math.isfinite(left):
+            steps = max(math.ceil(left / dt * (1.0 - 1e-9)), 1)
+            dt = left / steps
+            limit = "frame" if steps == 1 else limit
+        end = self.target if limit == "frame" else begin + dt
+        self._fluid.set_clock(STEP=dt, TIME=end)
+        return StepReport(dt, limit)
+
+    def _longest_step(self) -> tuple[float, str]:
+        fluid = self._fluid.choose_step()
+        limits = {fluid.limit: fluid.dt}
+        if math.isfinite(self._most_sub_steps):
+            limits["structure"] = self._most_sub_steps * self._structure.stable_step
+        limit = min(limits, key=lambda name: limits[name])
+        grade = math.floor(math.log(limits[limit]) / math.log(GRADE))
+        return GRADE**grade, limit
+
+    def push_structures(self) -> None:
+        """Hand the forces of the fluid to the structures."""
+        self._walls.react()
+        self._faces.push()
+
+    def advance_structures(self) -> None:
+        """Let the structures catch up with the fluid, and note how they have moved."""
+        self._faces.keep_motion()
+        self._structure.target = self._fluid.time
+        while self._structure.time < self._fluid.time and not self._structure.failed:
+            self.sub_steps += self._structure.step().count
+        self._faces.note_motion()

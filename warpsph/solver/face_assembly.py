@@ -1,0 +1,132 @@
+"""From the structures of a scene to the faces that its fluid sees."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, fields
+
+import numpy as np
+import warp as wp
+
+from warpsph.particles.neighbours import NeighbourSearch
+from warpsph.physics.assembly import Assembly, WallRange
+from warpsph.physics.boundary import Reaction, WallModel
+from warpsph.physics.faces import FaceModel
+from warpsph.physics.material import material
+from warpsph.physics.mirrored_walls import MirroredWalls
+from warpsph.physics.wall_motion import resting_poses
+from warpsph.sampling import SampledSet
+from warpsph.sampling.faces import Faces, faces_of
+from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.schema import Scene
+from warpsph.solver.structure_assembly import Body, StructureParts
+
+CLEAR = 1e-3
+"""Part of a spacing by which a thin structure may be thinner than the fluid's reach over it."""
+
+
+@dataclass(frozen=True)
+class SampledFaces(Faces):
+    """Faces of all structures, m in all, with owners among all particles of structures.
+
+    set_index: (m,) place of the structure among all sets; no_slip: (m,) 1 where fluid sticks, else 0.
+    """
+
+    set_index: np.ndarray
+    no_slip: np.ndarray
+
+
+def sample_faces(scene: Scene, structures: StructureParts) -> SampledFaces:
+    """The faces of all structures. Raises SceneError if fluid would act through a structure."""
+    by_body = [
+        faces_of(
+            body.sampled.position, scene.structures[body.name].shape, scene.spacing, scene.support_radius
+        )
+        for body in structures.bodies
+    ]
+    problems = [*_thin_problems(scene, structures, by_body)]
+    if problems:
+        raise SceneError(problems)
+    names = [*scene.fluids, *scene.boundaries, *scene.structures]
+    counts = [len(faces.owner) for faces in by_body]
+    bodies = structures.bodies
+    joined = {
+        member.name: np.concatenate([getattr(faces, member.name) for faces in by_body])
+        for member in fields(Faces)
+    }
+    joined["owner"] = np.concatenate([b.first + f.owner for b, f in zip(bodies, by_body, strict=True)])
+    sticks = [float(scene.structures[body.name].slip == "no_slip") for body in bodies]
+    return SampledFaces(
+        **joined,
+        set_index=np.repeat([names.index(body.name) for body in bodies], counts),
+        no_slip=np.repeat(sticks, counts),
+    )
+
+
+@dataclass(frozen=True)
+class FaceParts:
+    """Structures in the fluid: what it sees of them, and what connects them."""
+
+    model: WallModel
+    faces: FaceModel
+
+
+def make_faces(
+    scene: Scene,
+    sets: Sequence[SampledSet],
+    assembly: Assembly,
+    search: NeighbourSearch,
+    place: WallRange,
+    structures: StructureParts,
+    faces: SampledFaces,
+    sides: wp.array,
+    fluid_reaction: Reaction,
+) -> FaceParts:
+    """The passes of faces at a `place` of the index space, by the wall method of the scene."""
+    mirror = None
+    if assembly.options.wall == "modified_dynamic":
+        poses = resting_poses(assembly, len(sets))
+        mirror = MirroredWalls(assembly, search, assembly.vectors(faces.way), poses)
+    way = mirror.ways if mirror else assembly.vectors(np.zeros((1, scene.dimension)))
+    relaxation = _relaxation(scene, structures, faces)
+    model = WallModel(assembly, place, "face", fluid_reaction, mirror)
+    bodies = (structures.model, faces, structures.mass, relaxation)
+    return FaceParts(model, FaceModel(assembly, place, *bodies, sides, way, model.force))
+
+
+def _thin_problems(scene: Scene, structures: StructureParts, by_body: Sequence[Faces]) -> Iterator[Problem]:
+    """Structures so thin that fluid on one side would feel fluid on the other."""
+    reach, dp = scene.support_radius, scene.spacing
+    for body, faces in zip(structures.bodies, by_body, strict=True):
+        thinnest = float(faces.thickness.min())
+        flat = bool(structures.bonds.thin[body.range].any())
+        if flat or thinnest + dp < reach - CLEAR * dp:
+            thickness = f"{thinnest:.3g} m thick" if np.isfinite(thinnest) else "a single layer of particles"
+            message = (
+                f"it is {thickness} in places: fluid on one side would act through it on fluid on the other, "
+                f"whose particles see {reach:.3g} m far"
+            )
+            allowed = f"a thickness of at least {reach - dp:.3g} m, a smaller spacing or numerics.h_over_dp"
+            yield Problem.at(f"structures.{body.name}.shape", message, allowed)
+
+
+def _relaxation(scene: Scene, structures: StructureParts, faces: SampledFaces) -> np.ndarray:
+    """How fast the acceleration that the fluid sees follows that of each structure particle (n,) [1].
+
+    An acceleration a of a wall changes the pressure that the fluid sees in it by rho a times about a spacing, which
+    pushes a structure of areal mass m back by rho dp a / m. Explicit coupling, in which the fluid sees the acceleration
+    of the step before, would amplify that where rho dp > m; followed with 1 / (1 + rho dp / m) it is damped.
+    """
+    added = material(scene).density * scene.spacing
+    relaxation = np.empty(len(structures.mass))
+    for body in structures.bodies:
+        relaxation[body.range] = 1.0 / (1.0 + added / _areal_mass(scene, body, structures, faces))
+    return relaxation
+
+
+def _areal_mass(scene: Scene, body: Body, structures: StructureParts, faces: SampledFaces) -> float:
+    """The least mass of a structure per area of its surface [kg/m^2]."""
+    own = (faces.owner >= body.first) & (faces.owner < body.first + body.count)
+    extent = np.ptp(body.sampled.position, axis=0).min() + scene.spacing
+    thickness = min(float(faces.thickness[own].min()), float(extent))
+    return scene.structures[body.name].material.density * thickness
