@@ -23,7 +23,7 @@ class FaceKernels(NamedTuple):
     find_places: Any
     place: Any
     push: Any
-    note_motion: Any
+    find_mean_velocity: Any
 
 
 @cache
@@ -102,16 +102,18 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
         structure_clock: wp.array(dtype=wp.float64),
         prescriptions: wp.array2d(dtype=pose_type),
         seen_velocity: wp.array(dtype=point),
-        seen_acceleration: wp.array(dtype=point),
         position: wp.array(dtype=point),
         velocity_volume: wp.array(dtype=record),
         position_pressure: wp.array(dtype=record),
         position_density: wp.array(dtype=record),
-        acceleration: wp.array(dtype=vector),
         normal: wp.array(dtype=vector),
         way: wp.array(dtype=vector),
     ):
-        """One face: put it where its owner will be `ahead` steps from now, with the velocity that the fluid sees."""
+        """One face: put it where its owner will be `ahead` steps from now, with the velocity that the fluid sees.
+
+        The acceleration that the fluid sees stays zero. With that of the owner the pressure of an extrapolated wall
+        would push back what is accelerated, a step late: unstable for light and for stiff structures.
+        """
         i = offset + wp.tid()
         b = first_face + i
         k = face[i]
@@ -127,7 +129,6 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
         velocity_volume[b] = pack(narrow(v, zero), wall_volume)
         position_pressure[b] = pack(x_run, position_pressure[b][dim])
         position_density[b] = pack(x_run, position_density[b][dim])
-        acceleration[b] = narrow(seen_acceleration[s], zero)
         if wp.static(options.has_barrier):
             F = deformation(s, gradient, clamp, structure_clock, prescriptions)
             normal[i] = turned_normal(F, normal_at_rest[k])
@@ -159,25 +160,15 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
         fluid_force[s] = total
 
     @wp.kernel(module=module, enable_backward=False)
-    def note_motion(
+    def find_mean_velocity(
         offset: int,
         clock: wp.array(dtype=wp.float64),
-        relaxation: wp.array(dtype=wp.float64),
         displacement_before: wp.array(dtype=point),
-        velocity_before: wp.array(dtype=point),
         displacement: wp.array(dtype=point),
-        velocity: wp.array(dtype=point),
         seen_velocity: wp.array(dtype=point),
-        seen_acceleration: wp.array(dtype=point),
     ):
-        """One structure particle: the means of its velocity and acceleration over the steps made in one of the fluid.
-
-        They are what the fluid sees (Zhang, Rezavand & Hu 2021, eq. 26). The acceleration follows with a `relaxation`.
-        """
+        """One structure particle: the mean of its velocity over its steps in one of the fluid."""
         s = offset + wp.tid()
-        rate = wp.float64(1.0) / clock[wp.static(STEP)]
-        seen_velocity[s] = rate * (displacement[s] - displacement_before[s])
-        mean = rate * (velocity[s] - velocity_before[s])
-        seen_acceleration[s] += relaxation[s] * (mean - seen_acceleration[s])
+        seen_velocity[s] = (displacement[s] - displacement_before[s]) / clock[wp.static(STEP)]
 
-    return FaceKernels(turn_sides, find_places, place, push, note_motion)
+    return FaceKernels(turn_sides, find_places, place, push, find_mean_velocity)

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 import warp as wp
@@ -15,21 +14,9 @@ from warpsph.physics.assembly import Assembly, WallRange
 from warpsph.physics.structure import StructureModel
 from warpsph.sampling.faces import Faces
 
+SeenVelocity = Literal["end", "mean"]
 HALF_STEP, NOW = 0.5, 0.0
 """How many steps ahead of the structures faces are placed."""
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What the fluid sees of the motion of n structure particles: means over its last step, in double precision.
-
-    velocity [m/s]; acceleration [m/s^2], relaxed; displacement_before [m] and velocity_before [m/s]: at its beginning.
-    """
-
-    velocity: wp.array
-    acceleration: wp.array
-    displacement_before: wp.array
-    velocity_before: wp.array
 
 
 class FaceModel:
@@ -38,7 +25,7 @@ class FaceModel:
     Args:
         faces: of all structures together; their owners are particles of `structures`.
         mass: of each structure particle (n,) [kg].
-        relaxation: how fast the acceleration that the fluid sees follows that of its structure (n,) [1].
+        seen: velocity of structures that the fluid sees: that at the end of their steps, or their mean over them.
         side, way: vectors of each face, in the order of the faces, that this model keeps up to date: the side on which
             it is listed, and the way to its mirror point [m] (of a single entry where the wall method has none).
         force: of the fluid on each face [N], in the order of the faces.
@@ -51,7 +38,7 @@ class FaceModel:
         structures: StructureModel,
         faces: Faces,
         mass: np.ndarray,
-        relaxation: np.ndarray,
+        seen: SeenVelocity,
         side: wp.array,
         way: wp.array,
         force: wp.array,
@@ -72,10 +59,9 @@ class FaceModel:
         self._place_of = wp.zeros(max(walls.count, 1), dtype=wp.int32, device=device)
         self._faces_of = array(_faces_by_owner(faces.owner, structures.count), wp.int32, ndim=2)
         self._mass = array(mass, arithmetic.real)
-        self._relaxation = array(relaxation, wp.float64)
-        arrays = (wp.zeros(structures.count, dtype=arithmetic.point, device=device) for _ in range(4))
-        self.motion = Motion(*arrays)
-        wp.copy(self.motion.velocity, structures.state.velocity)
+        self._seen = seen
+        self.seen_velocity = wp.clone(structures.state.velocity)
+        self._displacement_before = wp.clone(structures.state.displacement)
         self._bind(force)
 
     @property
@@ -87,8 +73,7 @@ class FaceModel:
     def structure_arrays(self) -> dict[str, wp.array]:
         """Arrays of shape (structure particles,) that belong into a checkpoint."""
         return {
-            "seen_velocity": self.motion.velocity,
-            "seen_acceleration": self.motion.acceleration,
+            "seen_velocity": self.seen_velocity,
             "fluid_force": self._structures.scratch.fluid_force,
         }
 
@@ -108,14 +93,17 @@ class FaceModel:
         """Hand the forces on the faces to the structures, for all of their coming steps."""
         self._push.run(self._structures.count)
 
-    def keep_motion(self) -> None:
+    def keep_places(self) -> None:
         """Remember where the structures are before they go on."""
-        wp.copy(self.motion.displacement_before, self._structures.state.displacement)
-        wp.copy(self.motion.velocity_before, self._structures.state.velocity)
+        if self._seen == "mean":
+            wp.copy(self._displacement_before, self._structures.state.displacement)
 
-    def note_motion(self) -> None:
-        """Find the mean motion since `keep_motion`."""
-        self._note_motion.run(self._structures.count)
+    def note_velocity(self) -> None:
+        """Let the fluid see how the structures move, or have moved since `keep_places`."""
+        if self._seen == "mean":
+            self._find_mean_velocity.run(self._structures.count)
+        else:
+            wp.copy(self.seen_velocity, self._structures.state.velocity)
 
     def first_faces(self, values: np.ndarray) -> np.ndarray:
         """Of values on the faces in their present order (faces, ...), those of each structure particle's first face."""
@@ -155,13 +143,11 @@ class FaceModel:
                 s.reference.position,
                 s.state.displacement,
                 *shape,
-                self.motion.velocity,
-                self.motion.acceleration,
+                self.seen_velocity,
                 state.position,
                 state.velocity_volume,
                 scratch.position_pressure,
                 scratch.position_density,
-                state.acceleration,
                 walls.surface.normal,
                 self._way,
             )
@@ -177,17 +163,13 @@ class FaceModel:
             s.scratch.fluid_force,
             s.state.acceleration,
         )
-        self._note_motion = bind(
-            "note motion",
-            kernels.note_motion,
+        self._find_mean_velocity = bind(
+            "mean velocity",
+            kernels.find_mean_velocity,
             a.clock,
-            self._relaxation,
-            self.motion.displacement_before,
-            self.motion.velocity_before,
+            self._displacement_before,
             s.state.displacement,
-            s.state.velocity,
-            self.motion.velocity,
-            self.motion.acceleration,
+            self.seen_velocity,
         )
 
 

@@ -19,7 +19,8 @@ def expected_speed(scene: Scene, sets: Sequence[SampledSet], wall_speed: float) 
     """Return the largest speed [m/s] that the scene lets expect.
 
     It adds the largest initial speed of a fluid or a structure, the largest speed of a wall, and the speed
-    sqrt(2 g H) of a fall from the highest fluid particle to the lowest particle, or sqrt(2 p / rho) of the initial pressure if that is more.
+    sqrt(2 g H) of a fall from the highest fluid particle to the lowest particle, or sqrt(2 p / rho) of the initial
+    pressure if that is more.
     """
     if scene.numerics.expected_speed is not None:
         return scene.numerics.expected_speed

@@ -60,7 +60,7 @@ def structure_conflict_problems(
     walls: Mapping[str, np.ndarray],
     structures: Mapping[str, np.ndarray],
 ) -> Iterator[Problem]:
-    """Fluids that reach into structures, and in a fluid structures that reach into walls without being clamped there."""
+    """Fluids that reach into structures; beside fluids also structures that reach into walls unclamped."""
     for (fluid, points), (name, structure) in product(fluids.items(), scene.structures.items()):
         inside = inside_wall(points, as_wall(structure), structures[name], scene.spacing)
         if len(inside):

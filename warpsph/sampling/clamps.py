@@ -1,4 +1,4 @@
-"""Which particles are clamped, and where they stand: on the surface of their clamp, where they are next to free ones."""
+"""Which particles are clamped, and where they stand: on the surface of their clamp, if they are next to free ones."""
 
 from __future__ import annotations
 

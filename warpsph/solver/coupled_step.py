@@ -1,9 +1,10 @@
 """One step of fluids and structures together, as a page of verbs.
 
 The fluid makes one step of its own size; structures make as many within it as they need. The force between them is
-found once, where the fluid finds its own, in the middle of its step, and both sides receive it over the whole step: momentum is
-conserved to rounding. The fluid sees the means of the structures' velocity and acceleration over their steps (Zhang,
-Rezavand & Hu 2021).
+found once, in the middle of the step, where the fluid finds its own, and both sides receive it over the whole step:
+momentum is conserved to rounding. Densities follow at the end of the step from the velocities there, those of
+structures included: with their mean over the step (Zhang, Rezavand & Hu 2021) the fluid would see them half a step
+late, and a stiff structure would draw energy from that.
 """
 
 from __future__ import annotations
@@ -18,8 +19,8 @@ from warpsph.solver.structure_step import StructureStepper
 from warpsph.solver.system import StepReport
 
 GRADE = 1.05
-"""Ratio of two sizes between which the step does not tell a difference, so that it seldom changes: for the fastest waves
-of a structure a step that goes to and fro is a source of energy."""
+"""Ratio of two sizes between which the step does not tell a difference, so that it seldom changes: for the fastest
+waves of a structure a step that goes to and fro is a source of energy."""
 
 
 class CoupledStepper:
@@ -79,9 +80,9 @@ class CoupledStepper:
         self._faces.push()
 
     def advance_structures(self) -> None:
-        """Let the structures catch up with the fluid, and note how they have moved."""
-        self._faces.keep_motion()
+        """Let the structures catch up with the fluid, and show it how they move."""
+        self._faces.keep_places()
         self._structure.target = self._fluid.time
         while self._structure.time < self._fluid.time and not self._structure.failed:
             self.sub_steps += self._structure.step().count
-        self._faces.note_motion()
+        self._faces.note_velocity()

@@ -14,7 +14,6 @@ from warpsph.particles.state import host_view
 from warpsph.sampling import SampledSet
 from warpsph.scene.schema import Scene
 from warpsph.solver.coupled_step import CoupledStepper
-from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.fluid_system import FluidSystem
 from warpsph.solver.ledger import Ledger, sum_up
 from warpsph.solver.structure_system import StructureSystem
@@ -89,8 +88,8 @@ class CoupledSystem:
         self.stepper.target = time
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
-        """Fields of fluids and walls as without structures; structures have also the force of the fluid on each particle
-        and the pressure that its first face shows."""
+        """Fields of fluids and walls as without structures; structures have also the force of the fluid on each
+        particle and the pressure that its first face shows."""
         unknown = sorted(set(fields or ()) - self.fields)
         if unknown:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(sorted(self.fields))}")
@@ -131,13 +130,7 @@ class CoupledSystem:
             **fluid,
             "sets": [{"name": name, "kind": kind, "particles": n} for name, kind, n in self.sets],
             "particles": self.particle_count,
-            "passes": [
-                *fluid["passes"],
-                "place faces",
-                "push structures",
-                *structure["passes"],
-                "note motion",
-            ],
+            "passes": [*fluid["passes"], "place faces", "push structures", *structure["passes"]],
             "pairs": [*fluid["pairs"], *structure["pairs"]],
             "fields": [*fluid["fields"], *fields],
             "list_bytes": fluid["list_bytes"] + structure["list_bytes"],

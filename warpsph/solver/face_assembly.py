@@ -12,14 +12,13 @@ from warpsph.particles.neighbours import NeighbourSearch
 from warpsph.physics.assembly import Assembly, WallRange
 from warpsph.physics.boundary import Reaction, WallModel
 from warpsph.physics.faces import FaceModel
-from warpsph.physics.material import material
 from warpsph.physics.mirrored_walls import MirroredWalls
 from warpsph.physics.wall_motion import resting_poses
 from warpsph.sampling import SampledSet
 from warpsph.sampling.faces import Faces, faces_of
 from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.schema import Scene
-from warpsph.solver.structure_assembly import Body, StructureParts
+from warpsph.solver.structure_assembly import StructureParts
 
 CLEAR = 1e-3
 """Part of a spacing by which a thin structure may be thinner than the fluid's reach over it."""
@@ -88,9 +87,8 @@ def make_faces(
         poses = resting_poses(assembly, len(sets))
         mirror = MirroredWalls(assembly, search, assembly.vectors(faces.way), poses)
     way = mirror.ways if mirror else assembly.vectors(np.zeros((1, scene.dimension)))
-    relaxation = _relaxation(scene, structures, faces)
     model = WallModel(assembly, place, "face", fluid_reaction, mirror)
-    bodies = (structures.model, faces, structures.mass, relaxation)
+    bodies = (structures.model, faces, structures.mass, scene.coupling.velocity)
     return FaceParts(model, FaceModel(assembly, place, *bodies, sides, way, model.force))
 
 
@@ -108,25 +106,3 @@ def _thin_problems(scene: Scene, structures: StructureParts, by_body: Sequence[F
             )
             allowed = f"a thickness of at least {reach - dp:.3g} m, a smaller spacing or numerics.h_over_dp"
             yield Problem.at(f"structures.{body.name}.shape", message, allowed)
-
-
-def _relaxation(scene: Scene, structures: StructureParts, faces: SampledFaces) -> np.ndarray:
-    """How fast the acceleration that the fluid sees follows that of each structure particle (n,) [1].
-
-    An acceleration a of a wall changes the pressure that the fluid sees in it by rho a times about a spacing, which
-    pushes a structure of areal mass m back by rho dp a / m. Explicit coupling, in which the fluid sees the acceleration
-    of the step before, would amplify that where rho dp > m; followed with 1 / (1 + rho dp / m) it is damped.
-    """
-    added = material(scene).density * scene.spacing
-    relaxation = np.empty(len(structures.mass))
-    for body in structures.bodies:
-        relaxation[body.range] = 1.0 / (1.0 + added / _areal_mass(scene, body, structures, faces))
-    return relaxation
-
-
-def _areal_mass(scene: Scene, body: Body, structures: StructureParts, faces: SampledFaces) -> float:
-    """The least mass of a structure per area of its surface [kg/m^2]."""
-    own = (faces.owner >= body.first) & (faces.owner < body.first + body.count)
-    extent = np.ptp(body.sampled.position, axis=0).min() + scene.spacing
-    thickness = min(float(faces.thickness[own].min()), float(extent))
-    return scene.structures[body.name].material.density * thickness
