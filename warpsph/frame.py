@@ -73,6 +73,6 @@ class Frame:
                 return particle_set
         raise KeyError(f"no particle set {name!r}; there are {', '.join(s.name for s in self.sets)}")
 
-    def of_kind(self, kind: str) -> tuple[SetFrame, ...]:
-        """The sets of one kind, in scene order."""
-        return tuple(s for s in self.sets if s.kind == kind)
+    def of_kind(self, *kinds: str) -> tuple[SetFrame, ...]:
+        """The sets of one kind or a few, in scene order."""
+        return tuple(s for s in self.sets if s.kind in kinds)

@@ -33,6 +33,7 @@ def test_structure_code_compiles_for_cuda(tmp_path, dimension, precision, law):
         loads=2,
         damped=True,
         contact=False,
+        immersed=True,
         moving_walls=False,
         thin=True,
     )

@@ -21,6 +21,7 @@ def test_structures_compile_for_cuda(tmp_path, dimension, precision, law, plane_
         loads=2,
         damped=True,
         contact=True,
+        immersed=False,
         moving_walls=True,
         thin=True,
     )

@@ -37,7 +37,7 @@ def test_the_density_is_the_sum_over_all_particles(dimension):
     )
     position = sim.array("position").numpy()
     position += np.random.default_rng(2).uniform(-0.02, 0.02, position.shape)
-    sim.system._stepper.renew_lists()
+    sim.system.stepper.renew_lists()
     before = sim.array("position").numpy().copy()
     sim.system.parts.fluid.synchronise()
     sim.system.parts.fluid._density_sum.find()

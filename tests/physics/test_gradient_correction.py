@@ -28,7 +28,7 @@ def displace(sim: Simulation) -> np.ndarray:
     """Put the particles off the lattice by up to 0.15 spacings, and return where they are."""
     position = sim.array("position").numpy()
     position += np.random.default_rng(4).uniform(-0.015, 0.015, position.shape)
-    sim.system._stepper.renew_lists()
+    sim.system.stepper.renew_lists()
     return sim.array("position").numpy()
 
 

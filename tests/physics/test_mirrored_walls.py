@@ -37,10 +37,11 @@ def test_velocity_at_the_wall_is_mirrored_exactly_for_a_linear_profile():
     fields = {name: getattr(scene, name) for name in type(scene).model_fields}
     sim = Simulation(Scene(**(fields | {"fluids": {"water": water}})), device="cpu")
     walls = sim.system.parts.walls
-    height = walls.reference.numpy()[:, 1]
+    reference = walls.motion.reference.numpy()
+    height = reference[:, 1]
     floor = (height < 0.0) & (height > -3.0 * scene.spacing)
-    seen = walls.surface.friction.numpy()[floor]
-    depth = walls.reference.numpy()[floor, 1]
+    seen = walls.model.walls.surface.friction.numpy()[floor]
+    depth = reference[floor, 1]
     assert seen[:, 0] == pytest.approx(1.0e-5 * depth / 1.0e-3, rel=1e-9)
     assert seen[:, 1] == pytest.approx(np.zeros(len(depth)), abs=1e-17)
 

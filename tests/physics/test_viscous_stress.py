@@ -107,7 +107,7 @@ def test_carried_viscosity_follows_its_particle():
         carried = sim.system.parts.fluid._stress.carried.numpy()[np.argsort(sim.array("id").numpy())]
         start.setdefault(moment, carried)
         sim.advance(0.3)
-        sim.system._stepper.renew_lists()
+        sim.system.stepper.renew_lists()
     position = Simulation(scene, device="cpu").frame().sets[0].fields["position"]
     assert start[0] == pytest.approx(1.0 + position @ [1.0, 10.0], rel=1e-6)
     assert np.array_equal(start[0], start[1])

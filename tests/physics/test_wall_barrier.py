@@ -47,7 +47,7 @@ def test_disordered_water_stays_in_and_comes_to_rest(monkeypatch, dimension, wal
 @pytest.mark.parametrize("dimension", [2, 3])
 def test_normals_point_out_of_the_surface_and_only_there(dimension):
     sim = Simulation(still_tank(dimension), device="cpu")
-    walls = sim.system.parts.walls
+    walls = sim.system.parts.walls.motion
     position, normal = walls.reference.numpy(), walls.reference_normal.numpy()
     up = np.eye(dimension)[-1]
     middle = np.all(np.abs(position[:, :-1] - 0.25) < 0.08, axis=1)

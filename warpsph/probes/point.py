@@ -18,12 +18,13 @@ class PointProbe(Probe):
     """First-order consistent interpolation of fluid fields; NaN where the point is not in the fluid.
 
     A point is in the fluid where phi_fluid / (1 - phi_wall) >= 1/2, phi = sum_b V_b W_b over the particles of
-    the fluids or of the walls: half of the space that the walls leave free around it is filled.
+    the fluids or of walls and structures: half of the space that the walls leave free around it is filled.
     """
 
     def __init__(self, name: str, spec: PointSpec, scene: Scene) -> None:
         fluid_fields = tuple(dict.fromkeys(("position", "density", "mass", *spec.fields)))
-        needs = {"fluid": fluid_fields, "boundary": ("position", "volume")}
+        solids = dict.fromkeys(("boundary", "structure"), ("position", "volume"))
+        needs = {"fluid": fluid_fields, **solids}
         super().__init__(spec.columns(name, scene.dimension), needs)
         self._point = tuple(spec.at)
         self._fields = spec.fields
@@ -32,7 +33,7 @@ class PointProbe(Probe):
     def evaluate(self, frame: Frame) -> tuple[float, ...]:
         """The fields in the order of the columns, vectors by component."""
         offsets, weights, values = self._gather(frame.of_kind("fluid"))
-        _, wall_weights, _ = self._gather(frame.of_kind("boundary"))
+        _, wall_weights, _ = self._gather(frame.of_kind("boundary", "structure"))
         if weights.sum() < 0.5 * (1.0 - wall_weights.sum()) or not weights.any():
             return (math.nan,) * len(self.columns)
         return tuple(map(float, interpolate(offsets / self._smoothing.smoothing_length, weights, values)))

@@ -1,4 +1,4 @@
-"""Pressure that a gauge in a wall measures."""
+"""Pressure that a gauge in a wall or a structure measures."""
 
 import numpy as np
 
@@ -14,7 +14,7 @@ OCCUPIED = 0.85
 
 
 class WallPressureProbe(Probe):
-    """Mean pressure of the wall's surface particles within the radius of the gauge's centre at the start.
+    """Mean pressure of the surface particles of a wall or structure within the radius of the gauge at the start.
 
     A particle lies at the surface if the place one spacing before it is empty, looking along the normal that the wall
     particles around it give, and if the gauge is before it, not behind (Marrone et al. 2010, for free surfaces). The
@@ -23,7 +23,7 @@ class WallPressureProbe(Probe):
     """
 
     def __init__(self, name: str, spec: WallPressureSpec, scene: Scene) -> None:
-        needs = {"boundary": ("id", "position", "pressure")}
+        needs = dict.fromkeys(("boundary", "structure"), ("id", "position", "pressure"))
         super().__init__(spec.columns(name, scene.dimension), needs)
         self._name = name
         self._spec = spec
@@ -36,7 +36,7 @@ class WallPressureProbe(Probe):
 
     def start(self, frame: Frame) -> None:
         """Choose the particles; SceneError if there are none within the radius."""
-        wall = frame.set_named(self._spec.boundary)
+        wall = frame.set_named(self._spec.solid)
         distance = np.linalg.norm(wall.fields["position"] - np.array(self._spec.at), axis=1)
         chosen, normals = self._surface(wall, np.flatnonzero(distance <= self._spec.radius))
         if not len(chosen):
@@ -49,7 +49,7 @@ class WallPressureProbe(Probe):
         """The pressure [Pa]."""
         if not len(self._ids):
             raise ValueError("start() comes before evaluate()")
-        fields = frame.set_named(self._spec.boundary).fields
+        fields = frame.set_named(self._spec.solid).fields
         chosen = np.flatnonzero(np.isin(fields["id"], self._ids))
         pressure = fields["pressure"][chosen[np.argsort(fields["id"][chosen])]].astype(np.float64)
         return (float(np.mean(np.where(pressure == 0.0, 0.0, pressure + self._head))),)
@@ -75,7 +75,7 @@ class WallPressureProbe(Probe):
         return total / max(float(np.linalg.norm(total)), 1e-300)
 
     def _too_small(self, wall: SetFrame, distance: np.ndarray) -> Problem:
-        message = f"no surface particle of {self._spec.boundary!r} lies this close to the gauge"
+        message = f"no surface particle of {self._spec.solid!r} lies this close to the gauge"
         near = np.flatnonzero(distance <= distance.min() + self._reach) if len(distance) else distance
         surface, _ = self._surface(wall, np.asarray(near, dtype=np.int64))
         nearest = (

@@ -24,7 +24,7 @@ beside a wall that ends above the bed the free space halves, and that is no lid.
 class WaterLevelProbe(Probe):
     """Top of the column of fluid that stands on the bed below the gauge, as a coordinate along the axis.
 
-    With phi = sum_b V_b W_b over the particles of the fluids or of the walls, a place is wet where the fluid
+    With phi = sum_b V_b W_b over the particles of the fluids or of walls and structures, a place is wet where the fluid
     fills half of what the walls leave free around it, phi_fluid / (1 - phi_wall) >= 1/2; so the surface is
     found right, and to a fraction of the spacing, also beside a wall. The column begins at the lowest bed on
     which fluid rests and ends where it first turns dry: drops in the air above do not count. A dry gauge
@@ -33,7 +33,8 @@ class WaterLevelProbe(Probe):
     """
 
     def __init__(self, name: str, spec: WaterLevelSpec, scene: Scene) -> None:
-        needs = {"fluid": ("position", "density", "mass"), "boundary": ("position", "volume")}
+        solids = dict.fromkeys(("boundary", "structure"), ("position", "volume"))
+        needs = {"fluid": ("position", "density", "mass"), **solids}
         super().__init__(spec.columns(name, scene.dimension), needs)
         self._axis = _vertical_axis(scene) if spec.axis == "auto" else AXES.index(spec.axis)
         self._up = -1.0 if scene.gravity[self._axis] > 0.0 else 1.0
@@ -47,7 +48,7 @@ class WaterLevelProbe(Probe):
         return (self._up * level(self._profile(frame)),)
 
     def _profile(self, frame: Frame) -> "Profile":
-        particles = [self._near_gauge(frame, kind) for kind in ("fluid", "boundary")]
+        particles = [self._near_gauge(frame, kinds) for kinds in (("fluid",), ("boundary", "structure"))]
         reach = int(self._smoothing.support_radius / self._step) + 1
         lowest = [np.floor(height / self._step).astype(np.int64) for height, _, _ in particles]
         touched = [bottom[:, None] + np.arange(-reach, reach + 2) for bottom in lowest]
@@ -61,10 +62,10 @@ class WaterLevelProbe(Probe):
             )
         return Profile(samples, self._step, filling[0], filling[1], reach)
 
-    def _near_gauge(self, frame: Frame, kind: str) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    def _near_gauge(self, frame: Frame, kinds: tuple[str, ...]) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """Height against gravity, distance from the gauge's line, and volume of the particles near it."""
         parts = [(np.empty(0), np.empty(0), np.empty(0))]
-        for particle_set in frame.of_kind(kind):
+        for particle_set in frame.of_kind(*kinds):
             position = particle_set.fields["position"]
             near = self._smoothing.near(position, self._gauge)
             across = [self._smoothing.separation(position[near, a], x, a) for a, x in self._gauge]

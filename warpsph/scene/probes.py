@@ -82,22 +82,34 @@ class WaterLevelProbe(_Probe):
         return ("level[m]",)
 
 
-class WallPressureProbe(_Probe):
-    """Mean pressure on the surface of a wall near a point.
+class _OnSolid(_Probe):
+    """A probe on one boundary or on one structure; the scene gives one of the two."""
+
+    boundary: Name | None = None
+    """The boundary, or null where a structure is given. Default: null."""
+
+    structure: Name | None = None
+    """The structure, or null where a boundary is given. Default: null."""
+
+    @property
+    def solid(self) -> str:
+        """Name of the boundary or structure."""
+        return self.boundary or self.structure or ""
+
+
+class WallPressureProbe(_OnSolid):
+    """Mean pressure on the surface of a wall or a structure near a point.
 
     It is taken from the first layer of wall particles, and moved to the surface half a spacing before it by the
     hydrostatic gradient.
     """
 
     type: Literal["wall_pressure"] = "wall_pressure"
-    boundary: Name
-    """The boundary that carries the gauge."""
-
     at: Vector
-    """Centre of the gauge [m], on the surface."""
+    """Centre of the gauge [m], on the surface at the start."""
 
     radius: PositiveReal
-    """Wall particles of the first layer within this distance count [m]."""
+    """Particles of the first layer within this distance count [m]."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return ("pressure[Pa]",)
@@ -122,16 +134,12 @@ class PointProbe(_Probe):
         return tuple(column for field in self.fields for column in columns[field])
 
 
-class ForceProbe(_Probe):
-    """Force and torque of the fluid on a boundary."""
+class ForceProbe(_OnSolid):
+    """Force and torque of the fluid on a boundary or a structure."""
 
     type: Literal["force"] = "force"
-    boundary: Name
-    """The boundary on which the fluid acts."""
-
     about: Vector | None = None
-    """Point about which the torque is taken [m]; null: the boundary's centre of mass at
-    the start. Default: null."""
+    """Point about which the torque is taken [m]; null: the centre of mass at the start. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return _force_columns(dimension)

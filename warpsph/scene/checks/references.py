@@ -99,8 +99,24 @@ def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Prob
             | MomentumProbe(structure=str(structure))
         ) if structure not in names.structures:
             yield unknown_name(f"{key}.structure", "structure", structure, names.structures)
-        case WallPressureProbe() | ForceProbe() if probe.boundary not in names.boundaries:
-            yield unknown_name(f"{key}.boundary", "boundary", probe.boundary, names.boundaries)
+        case WallPressureProbe() | ForceProbe():
+            yield from _solid_problems(probe, names, key)
+
+
+def _solid_problems(
+    probe: WallPressureProbe | ForceProbe, names: DeclaredNames, key: str
+) -> Iterator[Problem]:
+    if (probe.boundary is None) == (probe.structure is None):
+        message = "it looks at one boundary or at one structure"
+        yield Problem.at(key, message, "either boundary or structure")
+    if probe.boundary is not None and probe.boundary not in names.boundaries:
+        yield unknown_name(f"{key}.boundary", "boundary", probe.boundary, names.boundaries)
+    if probe.structure is not None:
+        if probe.structure not in names.structures:
+            yield unknown_name(f"{key}.structure", "structure", probe.structure, names.structures)
+        elif not names.fluids:
+            message = "no fluid acts on structures of this scene"
+            yield Problem.at(f"{key}.structure", message, "a scene with a fluid", probe.structure)
 
 
 def _gauge_problems(probe: WaterLevelProbe, scene: Scene, key: str) -> Iterator[Problem]:
