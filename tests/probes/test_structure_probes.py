@@ -1,6 +1,7 @@
 """Probes of structures: exact where they must be, sums of mechanics elsewhere."""
 
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -91,6 +92,40 @@ def test_a_single_row_of_particles_is_exact_for_fields_along_it():
     assert probe.evaluate(frame_of(body(rest, u)))[:2] == pytest.approx((0.3, 2.0), abs=1e-12)
 
 
+def test_the_frame_of_a_moving_clamp_sees_the_deformation_alone():
+    """A body that bends by w = a y, dw/dt = b y in the frame of its clamp, which turns and drifts.
+
+    x = R (X + w - c) + c + V t, so that v = R dw/dt + omega x R (X + w - c) + V.
+    """
+    rate, center, drift, time = np.deg2rad(70.0), np.array([0.3, -0.2]), np.array([0.5, 2.0]), 0.8
+    motion = [
+        {"type": "rotation", "rate": 70.0, "center": center.tolist()},
+        {"type": "linear", "velocity": drift.tolist()},
+    ]
+    clamp = {"region": {"type": "box", "min": [-1.0, -1.0], "max": [0.2, 2.0]}, "motion": motion}
+    spec = {"type": "displacement", "structure": "beam", "at": [1.0, 0.2], "frame": "root"}
+    beam = beam_scene(spec).structures["beam"].model_dump() | {"clamps": {"root": clamp}}
+    probe = probe_of(beam_scene(spec, structures={"beam": beam}))
+    rest = lattice([0.0, 0.0], [1.0, 0.4])
+    w, w_rate = np.outer(rest[:, 1], [0.3, -0.1]), np.outer(rest[:, 1], [-4.0, 7.0])
+    turn = np.array([[np.cos(rate * time), -np.sin(rate * time)], [np.sin(rate * time), np.cos(rate * time)]])
+    arm = (rest + w - center) @ turn.T
+    velocity = w_rate @ turn.T + rate * np.column_stack([-arm[:, 1], arm[:, 0]]) + drift
+    probe.start(frame_of(body(rest)))
+    moved = frame_of(body(rest, arm + center + drift * time - rest, velocity=velocity))
+    expected = [0.06, -0.02, -0.8, 1.4]
+    np.testing.assert_allclose(probe.evaluate(replace(moved, time=time)), expected, rtol=1e-11)
+
+
+def test_the_frame_of_a_clamp_at_rest_is_at_rest():
+    rest = lattice([0.0, 0.0], [1.0, 0.4])
+    probe = probe_of(
+        beam_scene({"type": "displacement", "structure": "beam", "at": [1.0, 0.2], "frame": "root"})
+    )
+    probe.start(frame_of(body(rest)))
+    assert probe.evaluate(frame_of(body(rest, np.array([0.2, 0.1]))))[:2] == pytest.approx((0.2, 0.1))
+
+
 @pytest.mark.parametrize("axis", ["x", "y", "z"])
 def test_the_angle_of_a_rigid_rotation_is_its_own(axis):
     """A right-handed turn by 2.5 rad about any axis, seen by a point on an edge."""
@@ -168,6 +203,12 @@ def test_momentum_of_a_rigid_motion(dimension):
         ),
         ({"type": "displacement", "structure": "bean", "at": [0.0, 0.0]}, "probes.probe.structure"),
         ({"type": "reaction", "structure": "beam", "clamp": "rot"}, "probes.probe.clamp"),
+        (
+            {"type": "displacement", "structure": "beam", "at": [0.0, 0.0], "frame": "rot"},
+            "probes.probe.frame",
+        ),
+        ({"type": "momentum", "structure": "bean"}, "probes.probe.structure"),
+        ({"type": "momentum", "fluid": "beam"}, "probes.probe.fluid"),
     ],
 )
 def test_probes_of_what_is_not_there_are_refused(probe, key):

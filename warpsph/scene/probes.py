@@ -177,6 +177,9 @@ class DisplacementProbe(_Probe):
     at: Vector
     """Where the point is at rest [m]; in the structure or on its surface."""
 
+    frame: Name | None = None
+    """Clamp of the structure with which the frame of reference moves and turns; null: one at rest. Default: null."""
+
     def quantities(self, dimension: int) -> tuple[str, ...]:
         shifts = tuple(f"displacement_{axis}[m]" for axis in AXES[:dimension])
         return shifts + tuple(f"velocity_{axis}[m/s]" for axis in AXES[:dimension])
@@ -237,11 +240,14 @@ class StructureEnergyProbe(_Probe):
 
 
 class MomentumProbe(_Probe):
-    """Momentum and angular momentum of structures about the origin."""
+    """Momentum and angular momentum about the origin: of everything that flows or moves, or of what is named."""
 
     type: Literal["momentum"] = "momentum"
+    fluid: Name | None = None
+    """A fluid that counts. Default: null."""
+
     structure: Name | None = None
-    """One structure only; null: all. Default: null."""
+    """A structure that counts. Where neither is named, all fluids and structures count. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         if dimension == 2:

@@ -50,10 +50,7 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
         key = f"probes.{name}"
         yield from _kind_problems(probe, names, key)
         yield from _set_problems(probe, names, key)
-        if isinstance(probe, ReactionProbe) and probe.structure in scene.structures:
-            clamps = scene.structures[probe.structure].clamps
-            if probe.clamp not in clamps:
-                yield unknown_name(f"{key}.clamp", "clamp", probe.clamp, clamps)
+        yield from _clamp_problems(probe, scene, key)
         axis = getattr(probe, "axis", None)
         if isinstance(probe, RotationProbe):
             yield from _rotation_problems(probe, scene, key)
@@ -63,6 +60,20 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield from _gauge_problems(probe, scene, key)
         if isinstance(probe, PointProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
+
+
+def _clamp_problems(probe: Probe, scene: Scene, key: str) -> Iterator[Problem]:
+    match probe:
+        case ReactionProbe():
+            name, clamp = "clamp", probe.clamp
+        case DisplacementProbe(frame=str(frame)):
+            name, clamp = "frame", frame
+        case _:
+            return
+    if probe.structure in scene.structures:
+        clamps = scene.structures[probe.structure].clamps
+        if clamp not in clamps:
+            yield unknown_name(f"{key}.{name}", "clamp", clamp, clamps)
 
 
 def _rotation_problems(probe: RotationProbe, scene: Scene, key: str) -> Iterator[Problem]:
@@ -78,7 +89,7 @@ def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Pro
     match probe:
         case FrontProbe() | ReachProbe() | WaterLevelProbe() | PointProbe() | EnergyProbe() | VolumeProbe():
             kind, there = "fluid", names.fluids
-        case StructureEnergyProbe() | MomentumProbe():
+        case StructureEnergyProbe():
             kind, there = "structure", names.structures
         case _:
             return
@@ -88,9 +99,10 @@ def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Pro
 
 
 def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    fluid = getattr(probe, "fluid", None)
+    if fluid is not None and fluid not in names.fluids:
+        yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
     match probe:
-        case FrontProbe(fluid=str(fluid)) | ReachProbe(fluid=str(fluid)) if fluid not in names.fluids:
-            yield unknown_name(f"{key}.fluid", "fluid", fluid, names.fluids)
         case (
             DisplacementProbe(structure=str(structure))
             | RotationProbe(structure=str(structure))
