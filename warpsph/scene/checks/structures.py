@@ -56,7 +56,7 @@ def _company_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
 
 
 def _coupling_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
-    if "coupling" in scene.model_fields_set and not (names.fluids and names.structures):
+    if scene.coupling != type(scene.coupling)() and not (names.fluids and names.structures):
         yield Problem.at("coupling", "there is nothing to couple", "coupling beside fluids and structures")
     if not (scene.fluids and scene.structures):
         return
