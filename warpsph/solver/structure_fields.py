@@ -21,8 +21,14 @@ OBSERVED = frozenset({"strain_energy", "hourglass_energy", "cauchy_stress", "von
 class StructureFields:
     """Evaluates fields of the present state; bodies lie in the order of their laws, sets in that of the scene."""
 
-    def __init__(self, scene: Scene, parts: StructureParts, now: Callable[[], float]) -> None:
-        """`now` tells the simulated time [s]."""
+    def __init__(
+        self,
+        scene: Scene,
+        parts: StructureParts,
+        now: Callable[[], float],
+        rigid_motion: Callable[[], Mapping[str, np.ndarray]] = dict,
+    ) -> None:
+        """`now` tells the simulated time [s], `rigid_motion` how the rigid bodies move (6, 3), by name."""
         self._scene = scene
         self._parts = parts
         self._now = now
@@ -45,6 +51,8 @@ class StructureFields:
             "green_lagrange_strain": lambda: green_lagrange(self._gradient()),
             "volume_ratio": lambda: np.linalg.det(np.eye(scene.dimension) + self._gradient()),
         }
+        if parts.rigid:
+            self._makers = {**self._makers, "rigid_motion": lambda: self._rigid_motion(rigid_motion())}
         self._motions = rigid_motions(scene)
         self._touched = {patch.name: patch for patch in parts.contact.walls} if parts.contact else {}
 
@@ -125,6 +133,14 @@ class StructureFields:
     def _contact_energy(self) -> np.ndarray:
         contact = self._parts.contact
         return contact.model.energy() if contact else np.zeros_like(self._parts.mass)
+
+    def _rigid_motion(self, motion: Mapping[str, np.ndarray]) -> np.ndarray:
+        """How the body of each particle moves (n, 6, 3), zero of flexible ones."""
+        rows = np.zeros((len(self._parts.mass), 6, 3))
+        for body in self._parts.bodies:
+            if body.name in motion:
+                rows[body.range] = motion[body.name]
+        return rows
 
     def _host_reference(self) -> np.ndarray:
         return host_view(self._model.reference.position)

@@ -1,0 +1,123 @@
+"""Kernels of rigid bodies among structures: their particles follow the body, and their forces are summed for it.
+
+The particles of a rigid body are like clamped ones: `drift` and `accelerate` of the structures leave them where they are.
+Its motion is integrated on the host from the sums of their accelerations, see `warpsph.solver.rigid_motion`.
+"""
+
+import hashlib
+from functools import cache
+from typing import Any, NamedTuple
+
+import warp as wp
+
+from warpsph_kernels.arithmetic import make_widen
+from warpsph_kernels.materials import make_material_struct
+from warpsph_kernels.pose import make_pose_struct
+from warpsph_kernels.structure import STEP, SUB_STEP, StructureOptions
+
+BLOCK = 256
+"""Particles a thread of `sum_forces` reads."""
+
+
+class RigidKernels(NamedTuple):
+    """Kernels of rigid bodies, in the order of a step."""
+
+    carry: Any
+    sum_forces: Any
+    settle: Any
+
+
+@cache
+def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
+    """Return the kernels of rigid bodies beside structures of these options."""
+    arithmetic = options.arithmetic
+    dim, real, vector, point = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.point
+    material, pose_type = make_material_struct(arithmetic), make_pose_struct(arithmetic)
+    widen = make_widen(arithmetic)
+    digest = hashlib.sha256(repr(options).encode()).hexdigest()[:10]
+    module = f"warpsph_rigid_{arithmetic.label}_{digest}"
+
+    @wp.kernel(module=module, enable_backward=False)
+    def carry(
+        offset: int,
+        members: wp.array(dtype=wp.int32),
+        body: wp.array(dtype=wp.int32),
+        poses: wp.array(dtype=pose_type),
+        reference: wp.array(dtype=point),
+        displacement: wp.array(dtype=point),
+        velocity: wp.array(dtype=point),
+    ):
+        """One particle: it moves with its body, u = R X + b - X [m] and v = dR/dt X + db/dt [m/s]."""
+        n = offset + wp.tid()
+        i = members[n]
+        pose = poses[body[n]]
+        X = reference[i]
+        displacement[i] = pose.rotation * X + pose.shift - X
+        velocity[i] = pose.rotation_rate * X + pose.shift_rate
+
+    @wp.kernel(module=module, enable_backward=False)
+    def sum_forces(
+        offset: int,
+        gravity: vector,
+        ranges: wp.array2d(dtype=wp.int32),
+        origins: wp.array(dtype=point),
+        materials: wp.array(dtype=material),
+        structure: wp.array(dtype=wp.int32),
+        volume: wp.array(dtype=real),
+        reference: wp.array(dtype=point),
+        acceleration: wp.array(dtype=point),
+        sums: wp.array2d(dtype=wp.float64),
+    ):
+        """One block of particles of one body: sums of m (a - g) [N] and of m r (x) (a - g) [N m], r = X - origin at rest.
+
+        `ranges` (blocks, 3) holds the body and the first and last particle but one of each block.
+        """
+        block = offset + wp.tid()
+        origin = origins[ranges[block, 0]]
+        force = point()
+        moment = wp.outer(force, force)
+        for i in range(ranges[block, 1], ranges[block, 2]):
+            mass = wp.float64(materials[structure[i]].density * volume[i])
+            f = mass * (acceleration[i] - widen(gravity))
+            force += f
+            moment += wp.outer(reference[i] - origin, f)
+        for row in range(wp.static(dim)):
+            sums[block, row] = force[row]
+            for column in range(wp.static(dim)):
+                sums[block, wp.static(dim) * (row + 1) + column] = moment[row, column]
+
+    @wp.kernel(module=module, enable_backward=False)
+    def settle(
+        offset: int,
+        clock: wp.array(dtype=wp.float64),
+        members: wp.array(dtype=wp.int32),
+        body: wp.array(dtype=wp.int32),
+        poses: wp.array(dtype=pose_type),
+        specific_work: wp.array(dtype=wp.float64),
+        materials: wp.array(dtype=material),
+        structure: wp.array(dtype=wp.int32),
+        volume: wp.array(dtype=real),
+        reference: wp.array(dtype=point),
+        load: wp.array2d(dtype=vector),
+        load_factor: wp.array2d(dtype=wp.float64),
+        velocity: wp.array(dtype=point),
+        work: wp.array(dtype=wp.float64),
+    ):
+        """One particle: its velocity at the end of the step [m/s], and the work of the step [J].
+
+        That of loads goes with the velocity in the middle of the step; that of what holds or moves the axes of the
+        body, which is not free, comes per mass [J/kg] in `specific_work`.
+        """
+        n = offset + wp.tid()
+        i = members[n]
+        done = specific_work[body[n]]
+        if wp.static(options.loads > 0):
+            now = int(clock[wp.static(SUB_STEP)])
+            for k in range(wp.static(options.loads)):
+                factor = wp.float64(0.5) * (load_factor[now, k] + load_factor[now + 1, k])
+                done += clock[wp.static(STEP)] * factor * wp.dot(widen(load[k, i]), velocity[i])
+        work[i] += wp.float64(materials[structure[i]].density * volume[i]) * done
+        pose = poses[body[n]]
+        velocity[i] = pose.rotation_rate * reference[i] + pose.shift_rate
+
+    return RigidKernels(carry, sum_forces, settle)
