@@ -1,7 +1,7 @@
 """Kernels of rigid bodies among structures: their particles follow the body, and their forces are summed for it.
 
-The particles of a rigid body are like clamped ones: `drift` and `accelerate` of the structures leave them where they are.
-Its motion is integrated on the host from the sums of their accelerations, see `warpsph.solver.rigid_motion`.
+The particles of a rigid body are like clamped ones: `drift` and `accelerate` of the structures leave them where they
+are. Its motion is integrated on the host from the sums of their accelerations, see `warpsph.solver.rigid_motion`.
 """
 
 import hashlib
@@ -40,20 +40,45 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
     @wp.kernel(module=module, enable_backward=False)
     def carry(
         offset: int,
+        clock: wp.array(dtype=wp.float64),
         members: wp.array(dtype=wp.int32),
         body: wp.array(dtype=wp.int32),
         poses: wp.array(dtype=pose_type),
+        materials: wp.array(dtype=material),
+        structure: wp.array(dtype=wp.int32),
+        volume: wp.array(dtype=real),
         reference: wp.array(dtype=point),
+        load: wp.array2d(dtype=vector),
+        load_factor: wp.array2d(dtype=wp.float64),
         displacement: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
+        work: wp.array(dtype=wp.float64),
     ):
-        """One particle: it moves with its body, u = R X + b - X [m] and v = dR/dt X + db/dt [m/s]."""
+        """One particle: it moves with its body, u = R X + b - X [m], and `work` [J] gains what loads do on the way.
+
+        Its velocity is that of the way in the step, which is what friction needs; in a step of no length that of the
+        pose.
+        """
         n = offset + wp.tid()
         i = members[n]
         pose = poses[body[n]]
         X = reference[i]
-        displacement[i] = pose.rotation * X + pose.shift - X
-        velocity[i] = pose.rotation_rate * X + pose.shift_rate
+        u = pose.rotation * X + pose.shift - X
+        way = u - displacement[i]
+        step = clock[wp.static(STEP)]
+        if step > wp.float64(0.0):
+            velocity[i] = way / step
+        else:
+            velocity[i] = pose.rotation_rate * X + pose.shift_rate
+        if wp.static(options.loads > 0):
+            now = int(clock[wp.static(SUB_STEP)])
+            mass = wp.float64(materials[structure[i]].density * volume[i])
+            done = wp.float64(0.0)
+            for k in range(wp.static(options.loads)):
+                factor = wp.float64(0.5) * (load_factor[now, k] + load_factor[now + 1, k])
+                done += factor * wp.dot(widen(load[k, i]), way)
+            work[i] += mass * done
+        displacement[i] = u
 
     @wp.kernel(module=module, enable_backward=False)
     def sum_forces(
@@ -68,9 +93,10 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
         acceleration: wp.array(dtype=point),
         sums: wp.array2d(dtype=wp.float64),
     ):
-        """One block of particles of one body: sums of m (a - g) [N] and of m r (x) (a - g) [N m], r = X - origin at rest.
+        """One block of particles of one body: sums of m (a - g) [N] and of m r (x) (a - g) [N m].
 
-        `ranges` (blocks, 3) holds the body and the first and last particle but one of each block.
+        r is the arm from the origin of the body at rest. `ranges` (blocks, 3) holds the body of each block, its first
+        particle and the one behind its last.
         """
         block = offset + wp.tid()
         origin = origins[ranges[block, 0]]
@@ -89,7 +115,6 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
     @wp.kernel(module=module, enable_backward=False)
     def settle(
         offset: int,
-        clock: wp.array(dtype=wp.float64),
         members: wp.array(dtype=wp.int32),
         body: wp.array(dtype=wp.int32),
         poses: wp.array(dtype=pose_type),
@@ -98,26 +123,17 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
         structure: wp.array(dtype=wp.int32),
         volume: wp.array(dtype=real),
         reference: wp.array(dtype=point),
-        load: wp.array2d(dtype=vector),
-        load_factor: wp.array2d(dtype=wp.float64),
         velocity: wp.array(dtype=point),
         work: wp.array(dtype=wp.float64),
     ):
-        """One particle: its velocity at the end of the step [m/s], and the work of the step [J].
+        """One particle: its velocity at the end of the step, v = dR/dt X + db/dt [m/s].
 
-        That of loads goes with the velocity in the middle of the step; that of what holds or moves the axes of the
-        body, which is not free, comes per mass [J/kg] in `specific_work`.
+        `work` [J] gains its part of `specific_work` [J/kg], which what moves the axes of its body has done in the step.
         """
         n = offset + wp.tid()
         i = members[n]
-        done = specific_work[body[n]]
-        if wp.static(options.loads > 0):
-            now = int(clock[wp.static(SUB_STEP)])
-            for k in range(wp.static(options.loads)):
-                factor = wp.float64(0.5) * (load_factor[now, k] + load_factor[now + 1, k])
-                done += clock[wp.static(STEP)] * factor * wp.dot(widen(load[k, i]), velocity[i])
-        work[i] += wp.float64(materials[structure[i]].density * volume[i]) * done
         pose = poses[body[n]]
         velocity[i] = pose.rotation_rate * reference[i] + pose.shift_rate
+        work[i] += wp.float64(materials[structure[i]].density * volume[i]) * specific_work[body[n]]
 
     return RigidKernels(carry, sum_forces, settle)

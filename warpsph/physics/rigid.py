@@ -55,19 +55,21 @@ class RigidModel:
             "rigid_ranges": wp.array(blocks, dtype=wp.int32, ndim=2, device=device),
             "rigid_origins": wp.array(np.array(origins), dtype=point, device=device),
             "rigid_work": wp.zeros(len(ranges), dtype=wp.float64, device=device),
-            "rigid_sums": wp.zeros((len(blocks), self._dim * (1 + self._dim)), dtype=wp.float64, device=device),
+            "rigid_sums": wp.zeros(
+                (len(blocks), self._dim * (1 + self._dim)), dtype=wp.float64, device=device
+            ),
         }
         self._body_of_block = blocks[:, 0]
         self._poses = np.array(host_view(self.arrays["rigid_poses"]))
         self._bind(launcher, structures)
 
     def carry(self, poses: Sequence[Pose]) -> None:
-        """Bring all particles to the poses of their bodies, with their velocities."""
+        """Bring all particles to the poses of their bodies, with the velocities of the way; add the work of loads."""
         self._write(poses)
         self._carry.run(len(self.arrays["rigid_members"]))
 
     def settle(self, poses: Sequence[Pose], specific_work: np.ndarray) -> None:
-        """Bring the velocities to those of the poses; add the work of loads, and another for each body [J/kg]."""
+        """Bring the velocities to those of the poses, and add a work for each body [J/kg]."""
         self._write(poses)
         write_array(self.arrays["rigid_work"], specific_work)
         self._settle.run(len(self.arrays["rigid_members"]))
@@ -87,30 +89,21 @@ class RigidModel:
         self.arrays["rigid_poses"].assign(self._poses)
 
     def _bind(self, launcher: Launcher, structures: StructureModel) -> None:
-        kernels = make_rigid_kernels(structures.options)
+        kernels, bind = make_rigid_kernels(structures.options), launcher.bind
         r, s, t = structures.reference, structures.state, structures.scratch
         members, body, poses, ranges, origins, work, sums = self.arrays.values()
         matter = (r.materials, r.structure, r.volume, r.position)
-        followers = (members, body, poses)
-        self._carry = launcher.bind(
-            "rigid motion", kernels.carry, *followers, r.position, s.displacement, s.velocity
-        )
         gravity = structures.options.arithmetic.vector(*structures.gravity)
-        self._sum = launcher.bind(
+        loads = (r.load, t.load_factor)
+        moved = (s.displacement, s.velocity, s.work)
+        followers = (members, body, poses)
+        self._carry = bind(
+            "rigid motion", kernels.carry, structures.clock, *followers, *matter, *loads, *moved
+        )
+        self._sum = bind(
             "rigid forces", kernels.sum_forces, gravity, ranges, origins, *matter, s.acceleration, sums
         )
-        self._settle = launcher.bind(
-            "rigid motion",
-            kernels.settle,
-            structures.clock,
-            *followers,
-            work,
-            *matter,
-            r.load,
-            t.load_factor,
-            s.velocity,
-            s.work,
-        )
+        self._settle = bind("rigid motion", kernels.settle, *followers, work, *matter, s.velocity, s.work)
 
 
 def _blocks(ranges: Sequence[tuple[int, int]]) -> list[tuple[int, int, int]]:

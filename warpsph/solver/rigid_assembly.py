@@ -106,7 +106,9 @@ def _initial(scene: Scene, body: RigidBody, sampled: SampledSet) -> RigidState:
         pose = in_space(pose_of(body, state, scene.dimension))
         off = float(np.abs(pose.velocity_of(position) - velocity).max())
         if off > RIGID * np.abs(velocity).max():
-            message = f"the body cannot begin like this: particles would move otherwise by up to {off:.3g} m/s"
+            message = (
+                f"the body cannot begin like this: particles would move otherwise by up to {off:.3g} m/s"
+            )
             allowed = "a rigid motion along and about the free axes, with what rigid.motion prescribes"
             raise SceneError([Problem.at(f"structures.{body.name}.velocity", message, allowed, list(given))])
     return state
@@ -115,7 +117,10 @@ def _initial(scene: Scene, body: RigidBody, sampled: SampledSet) -> RigidState:
 def _fitted(body: RigidBody, position: np.ndarray, velocity: np.ndarray) -> RigidState:
     """V and omega of the free axes for which sum |V + omega x r_a - v_a|^2 is least."""
     arm = position - body.origin
-    fields = [*(np.tile(axis, (len(arm), 1)) for axis in np.eye(3)), *(np.cross(axis, arm) for axis in np.eye(3))]
+    fields = [
+        *(np.tile(axis, (len(arm), 1)) for axis in np.eye(3)),
+        *(np.cross(axis, arm) for axis in np.eye(3)),
+    ]
     free = np.concatenate([body.moves, body.turns])
     fit = np.zeros(6)
     if free.any():

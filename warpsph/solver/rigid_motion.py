@@ -1,12 +1,12 @@
 """Motion of one rigid body, in double precision and always in three dimensions.
 
-A body is given by a point of it, its origin: the centre of mass, or a pivot that stays where it is. With the momentum m v
-and the angular momentum L about the origin, forces f_a held in space and R the rotation since the start,
+A body is given by a point of it, its origin: the centre of mass, or a pivot that stays where it is. With the momentum
+m v and the angular momentum L about the origin, forces f_a and R the rotation since the start,
 
     m dv/dt = sum f_a + m g,    dL/dt = sum R r_a x f_a + m R d x g,    L = R I R^T omega,
 
-r_a and d being the arms of the particles and of the centre of mass at rest. In the plane only x, y and the rotation about z
-are free.
+r_a and d being the arms of the particles and of the centre of mass at rest. In the plane only x, y and the rotation
+about z are free.
 """
 
 from __future__ import annotations
@@ -50,8 +50,8 @@ class RigidBody:
 class RigidState:
     """Where a body is and how it moves.
 
-    position, velocity: (3,) of its origin [m], [m/s]; attitude: unit quaternion (w, x, y, z) of R; angular_momentum: L of
-    the free axes (3,) [kg m2/s]; spin: angular velocity (3,) [rad/s] where the rotation is prescribed, else zero;
+    position, velocity: (3,) of its origin [m], [m/s]; attitude: unit quaternion (w, x, y, z) of R; angular_momentum: L
+    of the free axes (3,) [kg m2/s]; spin: angular velocity (3,) [rad/s] where the rotation is prescribed, else zero;
     angle: (3,) integral of the angular velocity [rad].
     """
 
@@ -65,7 +65,10 @@ class RigidState:
 
 @dataclass(frozen=True)
 class RigidForces:
-    """What acts on a body: force without gravity (3,) [N], moment tensor sum r_a (x) f_a (3, 3) [N m], g (3,) [m/s2]."""
+    """What acts on a body.
+
+    force: without gravity (3,) [N]; moment: tensor sum r_a (x) f_a (3, 3) [N m]; gravity: g (3,) [m/s2].
+    """
 
     force: np.ndarray
     moment: np.ndarray
@@ -78,7 +81,9 @@ class RigidForces:
     def torque(self, body: RigidBody, rotation: np.ndarray) -> np.ndarray:
         """Torque about the origin (3,) [N m] of a body turned by `rotation`."""
         turned = rotation @ self.moment
-        own = np.array([turned[1, 2] - turned[2, 1], turned[2, 0] - turned[0, 2], turned[0, 1] - turned[1, 0]])
+        own = np.array(
+            [turned[1, 2] - turned[2, 1], turned[2, 0] - turned[0, 2], turned[0, 1] - turned[1, 0]]
+        )
         return own + body.mass * np.cross(rotation @ body.offset, self.gravity)
 
 
@@ -151,14 +156,29 @@ def kinetic_energy(body: RigidBody, state: RigidState) -> float:
 
 
 def quickness(body: RigidBody, state: RigidState, forces: RigidForces) -> float:
-    """How fast the body turns or could swing [rad/s]: |omega|, or sqrt(2 |M| / I) under forces of the moment tensor M."""
-    free = np.flatnonzero(body.turns)
-    if not len(free):
+    """How fast the body may turn, or swing under forces of the moment tensor M [rad/s]: sqrt(2 |M| / I)."""
+    if not body.turns.any():
         return 0.0
     arm = forces.moment + body.mass * np.outer(body.offset, forces.gravity)
-    least = float(np.linalg.eigvalsh(body.inertia)[0]) if len(free) > 1 else _about(body, state, free)
-    swing = math.sqrt(2.0 * float(np.linalg.norm(arm)) / least)
-    return max(float(np.linalg.norm(angular_velocity(body, state))), swing)
+    swing = math.sqrt(2.0 * float(np.linalg.norm(arm)) / least_inertia(body, state))
+    return max(fastest_turn(body, state), swing)
+
+
+def fastest_turn(body: RigidBody, state: RigidState) -> float:
+    """Largest angular velocity [rad/s] that the body can reach with its angular momentum, |L| / I.
+
+    In free flight it stays the same: steps that followed the angular velocity itself would let the energy drift.
+    """
+    return float(np.linalg.norm(state.angular_momentum)) / least_inertia(body, state)
+
+
+def least_inertia(body: RigidBody, state: RigidState) -> float:
+    """Moment of inertia about the only free axis, or the smallest of all axes [kg m2]."""
+    free = np.flatnonzero(body.turns)
+    if len(free) > 1:
+        return float(np.linalg.eigvalsh(body.inertia)[0])
+    axis = rotation_of(state.attitude)[free[0]]
+    return float(axis @ body.inertia @ axis)
 
 
 def pose_of(body: RigidBody, state: RigidState, dimension: int) -> Pose:
@@ -175,8 +195,10 @@ def in_space(pose: Pose) -> Pose:
     missing = 3 - len(pose.translation)
     rotation = np.eye(3)
     rotation[: 3 - missing, : 3 - missing] = pose.rotation
-    wide = (np.pad(v, (0, missing)) for v in (pose.translation, pose.velocity, pose.acceleration))
-    return Pose(rotation, *wide, pose.angular_velocity, pose.angular_acceleration)
+    place, velocity, acceleration = (
+        np.pad(vector, (0, missing)) for vector in (pose.translation, pose.velocity, pose.acceleration)
+    )
+    return Pose(rotation, place, velocity, acceleration, pose.angular_velocity, pose.angular_acceleration)
 
 
 def rotation_of(attitude: np.ndarray) -> np.ndarray:
@@ -195,7 +217,9 @@ def quaternion_of(rotation: np.ndarray) -> np.ndarray:
     """Unit quaternion (w, x, y, z) of a rotation matrix, from its largest component (Shepperd 1978)."""
     xx, yy, zz = np.diag(rotation)
     squares = np.array([1.0 + xx + yy + zz, 1.0 + xx - yy - zz, 1.0 - xx + yy - zz, 1.0 - xx - yy + zz])
-    w = np.array([rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]])
+    w = np.array(
+        [rotation[2, 1] - rotation[1, 2], rotation[0, 2] - rotation[2, 0], rotation[1, 0] - rotation[0, 1]]
+    )
     both = rotation + rotation.T
     products = np.array(
         [
@@ -212,7 +236,7 @@ def quaternion_of(rotation: np.ndarray) -> np.ndarray:
 def _turned(body: RigidBody, state: RigidState, dt: float) -> RigidState:
     """The body after its free rotation for a time [s], in parts of at most LARGEST_TURN."""
     spin = _free_spin(body, state.attitude, state.angular_momentum)
-    parts = max(math.ceil(dt * float(np.linalg.norm(spin)) / LARGEST_TURN), 1)
+    parts = max(math.ceil(dt * fastest_turn(body, state) / LARGEST_TURN), 1)
     attitude, angle = state.attitude, state.angle
     for _ in range(parts):
         spin = _middle_spin(body, attitude, state.angular_momentum, dt / parts, spin)
@@ -227,7 +251,7 @@ def _middle_spin(
 ) -> np.ndarray:
     """Angular velocity (3,) that belongs to L and to the attitude that it leads to in half the time.
 
-    The rule is symmetric in time and of second order, so that the energy oscillates but does not drift; L is kept exactly.
+    The rule is symmetric in time and of second order: the energy oscillates but does not drift, and L is kept exactly.
     """
     spin = guess
     for _ in range(ITERATIONS):
@@ -249,12 +273,6 @@ def _free_spin(body: RigidBody, attitude: np.ndarray, momentum: np.ndarray) -> n
         inertia = rotation @ body.inertia @ rotation.T
         spin[free] = np.linalg.solve(inertia[np.ix_(free, free)], momentum[free])
     return spin
-
-
-def _about(body: RigidBody, state: RigidState, free: np.ndarray) -> float:
-    """Moment of inertia about the only free axis [kg m2]."""
-    axis = rotation_of(state.attitude)[free[0]]
-    return float(axis @ body.inertia @ axis)
 
 
 def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:

@@ -1,8 +1,8 @@
 """Rigid bodies within the step of structures.
 
-The halves of the velocity Verlet step are those of the other particles: the momenta are kicked by the forces at both ends
-of the step, and in between the body flies freely. Forces are summed on the device and read after every step, so that a
-step of rigid bodies is one look of the host at a few numbers.
+The halves of the velocity Verlet step are those of the other particles: the momenta are kicked by the forces at both
+ends of the step, and in between the body flies freely. Forces are summed on the device and read after every step, so
+that a step of rigid bodies is one look of the host at a few numbers.
 """
 
 from __future__ import annotations

@@ -297,9 +297,7 @@ def _material(scene: Scene, arithmetic: Arithmetic, sampled: SampledSet) -> Any:
     return numbers
 
 
-def _rigid(
-    scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], count: int
-) -> np.ndarray:
+def _rigid(scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], count: int) -> np.ndarray:
     """Whether each particle belongs to a rigid body, or a clamp prescribes all its components, shape (n,)."""
     rigid = np.zeros(count, dtype=bool)
     for body in bodies:

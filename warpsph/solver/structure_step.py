@@ -52,7 +52,7 @@ class StructureStepper:
     def start(self) -> None:
         """Measure the stability limit at rest, then find the forces of the initial state."""
         self._set_clock(0.0)
-        self.frequency = largest_frequency(self._model) if self._is_flexible else 0.0
+        self.frequency = largest_frequency(self._model) if self._is_flexible or self._contact else 0.0
         self._laws.write(self.time, 0.0)
         if self._rigid:
             self._rigid.start()
@@ -167,9 +167,9 @@ class StructureStepper:
     def limits(self) -> dict[str, float]:
         """The steps that the present state allows [s], by what limits them.
 
-        Elastic: cfl 2 / omega of the flexible structures, stiffened by contact; contact: the same of its springs where
-        all structures are rigid; rotation: what turns rigid bodies by a small angle. The stiffness is rounded up to a
-        power of STIFFNESS_GRADE, so that the step seldom changes.
+        Elastic: cfl 2 / omega of the flexible structures, stiffened by contact; contact: the same of the material whose
+        stiffness contact has, where all structures are rigid; rotation: what turns rigid bodies by a small angle. The
+        stiffness is rounded up to a power of STIFFNESS_GRADE, so that the step seldom changes.
         """
         stiffening = max(float(self._extremes[STIFFENING]), 1.0)
         grade = math.ceil(math.log(stiffening) / math.log(STIFFNESS_GRADE) - 1e-3)
