@@ -12,11 +12,15 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_widen
 from warpsph_kernels.materials import make_material_struct
-from warpsph_kernels.pose import make_pose_struct
 from warpsph_kernels.structure import STEP, SUB_STEP, StructureOptions
 
 BLOCK = 256
 """Particles a thread of `sum_forces` reads."""
+
+
+def pose_size(dimension: int) -> int:
+    """Numbers of a pose x = R X + b: R, b, dR/dt, db/dt by rows, and the work per mass in the step."""
+    return 2 * dimension * (dimension + 1) + 1
 
 
 class RigidKernels(NamedTuple):
@@ -32,10 +36,19 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
     """Return the kernels of rigid bodies beside structures of these options."""
     arithmetic = options.arithmetic
     dim, real, vector, point = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.point
-    material, pose_type = make_material_struct(arithmetic), make_pose_struct(arithmetic)
-    widen = make_widen(arithmetic)
+    material, widen = make_material_struct(arithmetic), make_widen(arithmetic)
     digest = hashlib.sha256(repr(options).encode()).hexdigest()[:10]
     module = f"warpsph_rigid_{arithmetic.label}_{digest}"
+
+    @wp.func
+    def moved(A: wp.array(dtype=wp.float64), first: int, X: point):
+        """A X + b with the matrix A and the vector b that stand in a row of the poses from `first` on."""
+        out = point()
+        for row in range(wp.static(dim)):
+            out[row] = A[first + wp.static(dim * dim) + row]
+            for column in range(wp.static(dim)):
+                out[row] += A[first + wp.static(dim) * row + column] * X[column]
+        return out
 
     @wp.kernel(module=module, enable_backward=False)
     def carry(
@@ -43,7 +56,7 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
         clock: wp.array(dtype=wp.float64),
         members: wp.array(dtype=wp.int32),
         body: wp.array(dtype=wp.int32),
-        poses: wp.array(dtype=pose_type),
+        poses: wp.array2d(dtype=wp.float64),
         materials: wp.array(dtype=material),
         structure: wp.array(dtype=wp.int32),
         volume: wp.array(dtype=real),
@@ -63,13 +76,13 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
         i = members[n]
         pose = poses[body[n]]
         X = reference[i]
-        u = pose.rotation * X + pose.shift - X
+        u = moved(pose, 0, X) - X
         way = u - displacement[i]
         step = clock[wp.static(STEP)]
         if step > wp.float64(0.0):
             velocity[i] = way / step
         else:
-            velocity[i] = pose.rotation_rate * X + pose.shift_rate
+            velocity[i] = moved(pose, wp.static(dim * (dim + 1)), X)
         if wp.static(options.loads > 0):
             now = int(clock[wp.static(SUB_STEP)])
             mass = wp.float64(materials[structure[i]].density * volume[i])
@@ -117,8 +130,7 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
         offset: int,
         members: wp.array(dtype=wp.int32),
         body: wp.array(dtype=wp.int32),
-        poses: wp.array(dtype=pose_type),
-        specific_work: wp.array(dtype=wp.float64),
+        poses: wp.array2d(dtype=wp.float64),
         materials: wp.array(dtype=material),
         structure: wp.array(dtype=wp.int32),
         volume: wp.array(dtype=real),
@@ -128,12 +140,15 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
     ):
         """One particle: its velocity at the end of the step, v = dR/dt X + db/dt [m/s].
 
-        `work` [J] gains its part of `specific_work` [J/kg], which what moves the axes of its body has done in the step.
+        `work` [J] gains its part of what moves the axes of its body has done in the step; it stands per mass [J/kg]
+        behind the pose.
         """
         n = offset + wp.tid()
         i = members[n]
         pose = poses[body[n]]
-        velocity[i] = pose.rotation_rate * reference[i] + pose.shift_rate
-        work[i] += wp.float64(materials[structure[i]].density * volume[i]) * specific_work[body[n]]
+        velocity[i] = moved(pose, wp.static(dim * (dim + 1)), reference[i])
+        work[i] += (
+            wp.float64(materials[structure[i]].density * volume[i]) * pose[wp.static(2 * dim * (dim + 1))]
+        )
 
     return RigidKernels(carry, sum_forces, settle)

@@ -6,11 +6,10 @@ from collections.abc import Sequence
 
 import numpy as np
 import warp as wp
-from warpsph_kernels.pose import make_pose_struct
-from warpsph_kernels.rigid import BLOCK, make_rigid_kernels
+from warpsph_kernels.rigid import BLOCK, make_rigid_kernels, pose_size
 
 from warpsph.particles.launch import Launcher
-from warpsph.particles.state import host_view, write_array
+from warpsph.particles.state import host_view
 from warpsph.physics.structure import StructureModel
 from warpsph.sampling.kinematics import Pose
 
@@ -20,9 +19,11 @@ UNITS = {
     "rigid_poses": "SI",
     "rigid_ranges": "1",
     "rigid_origins": "m",
-    "rigid_work": "J/kg",
     "rigid_sums": "N, N m",
 }
+
+POSE = ("rotation", "shift", "rotation_rate", "shift_rate")
+"""What a row of the poses holds, in this order."""
 
 
 class RigidModel:
@@ -49,18 +50,15 @@ class RigidModel:
         self.arrays = {
             "rigid_members": wp.array(members, dtype=wp.int32, device=device),
             "rigid_body": wp.array(body, dtype=wp.int32, device=device),
-            "rigid_poses": wp.zeros(
-                len(ranges), dtype=make_pose_struct(structures.options.arithmetic), device=device
-            ),
+            "rigid_poses": wp.zeros((len(ranges), pose_size(self._dim)), dtype=wp.float64, device=device),
             "rigid_ranges": wp.array(blocks, dtype=wp.int32, ndim=2, device=device),
             "rigid_origins": wp.array(np.array(origins), dtype=point, device=device),
-            "rigid_work": wp.zeros(len(ranges), dtype=wp.float64, device=device),
             "rigid_sums": wp.zeros(
                 (len(blocks), self._dim * (1 + self._dim)), dtype=wp.float64, device=device
             ),
         }
         self._body_of_block = blocks[:, 0]
-        self._poses = np.array(host_view(self.arrays["rigid_poses"]))
+        self._poses = np.zeros((len(ranges), pose_size(self._dim)))
         self._bind(launcher, structures)
 
     def carry(self, poses: Sequence[Pose]) -> None:
@@ -70,8 +68,8 @@ class RigidModel:
 
     def settle(self, poses: Sequence[Pose], specific_work: np.ndarray) -> None:
         """Bring the velocities to those of the poses, and add a work for each body [J/kg]."""
+        self._poses[:, -1] = specific_work
         self._write(poses)
-        write_array(self.arrays["rigid_work"], specific_work)
         self._settle.run(len(self.arrays["rigid_members"]))
 
     def sums(self) -> tuple[np.ndarray, np.ndarray]:
@@ -84,14 +82,14 @@ class RigidModel:
 
     def _write(self, poses: Sequence[Pose]) -> None:
         for row, pose in zip(self._poses, poses, strict=True):
-            for name, value in pose.derivatives().items():
-                row[name] = value
+            known = pose.derivatives()
+            row[:-1] = np.concatenate([known[name].ravel() for name in POSE])
         self.arrays["rigid_poses"].assign(self._poses)
 
     def _bind(self, launcher: Launcher, structures: StructureModel) -> None:
         kernels, bind = make_rigid_kernels(structures.options), launcher.bind
         r, s, t = structures.reference, structures.state, structures.scratch
-        members, body, poses, ranges, origins, work, sums = self.arrays.values()
+        members, body, poses, ranges, origins, sums = self.arrays.values()
         matter = (r.materials, r.structure, r.volume, r.position)
         gravity = structures.options.arithmetic.vector(*structures.gravity)
         loads = (r.load, t.load_factor)
@@ -103,7 +101,7 @@ class RigidModel:
         self._sum = bind(
             "rigid forces", kernels.sum_forces, gravity, ranges, origins, *matter, s.acceleration, sums
         )
-        self._settle = bind("rigid motion", kernels.settle, *followers, work, *matter, s.velocity, s.work)
+        self._settle = bind("rigid motion", kernels.settle, *followers, *matter, s.velocity, s.work)
 
 
 def _blocks(ranges: Sequence[tuple[int, int]]) -> list[tuple[int, int, int]]:

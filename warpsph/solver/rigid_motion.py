@@ -13,6 +13,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -44,6 +45,21 @@ class RigidBody:
     moves: np.ndarray
     turns: np.ndarray
     motion: RigidMotion | None
+
+    @cached_property
+    def axes(self) -> np.ndarray:
+        """Indices of the axes about which it is free to turn."""
+        return np.flatnonzero(self.turns)
+
+    @cached_property
+    def compliance(self) -> np.ndarray:
+        """Inverse of I (3, 3)."""
+        return np.linalg.inv(self.inertia)
+
+    @cached_property
+    def least_moment(self) -> float:
+        """Smallest moment of inertia of all axes [kg m2]."""
+        return float(np.linalg.eigvalsh(self.inertia)[0])
 
 
 @dataclass(frozen=True)
@@ -84,7 +100,7 @@ class RigidForces:
         own = np.array(
             [turned[1, 2] - turned[2, 1], turned[2, 0] - turned[0, 2], turned[0, 1] - turned[1, 0]]
         )
-        return own + body.mass * np.cross(rotation @ body.offset, self.gravity)
+        return own + body.mass * cross(rotation @ body.offset, self.gravity)
 
 
 def kicked(body: RigidBody, state: RigidState, forces: RigidForces, dt: float) -> RigidState:
@@ -139,7 +155,7 @@ def holding_power(body: RigidBody, state: RigidState, forces: RigidForces, time:
         return power
     rotation = rotation_of(state.attitude)
     inertia, spin = rotation @ body.inertia @ rotation.T, state.spin
-    change = inertia @ pose.angular_acceleration + np.cross(spin, inertia @ spin)
+    change = inertia @ pose.angular_acceleration + cross(spin, inertia @ spin)
     return power + float((change - forces.torque(body, rotation)) @ spin)
 
 
@@ -174,10 +190,9 @@ def fastest_turn(body: RigidBody, state: RigidState) -> float:
 
 def least_inertia(body: RigidBody, state: RigidState) -> float:
     """Moment of inertia about the only free axis, or the smallest of all axes [kg m2]."""
-    free = np.flatnonzero(body.turns)
-    if len(free) > 1:
-        return float(np.linalg.eigvalsh(body.inertia)[0])
-    axis = rotation_of(state.attitude)[free[0]]
+    if len(body.axes) > 1:
+        return body.least_moment
+    axis = rotation_of(state.attitude)[body.axes[0]]
     return float(axis @ body.inertia @ axis)
 
 
@@ -186,7 +201,7 @@ def pose_of(body: RigidBody, state: RigidState, dimension: int) -> Pose:
     rotation, spin = rotation_of(state.attitude), angular_velocity(body, state)
     arm = rotation @ body.origin
     nothing = np.zeros(3)
-    place, velocity = state.position - arm, state.velocity - np.cross(spin, arm)
+    place, velocity = state.position - arm, state.velocity - cross(spin, arm)
     return Pose(rotation, place, velocity, nothing, spin, nothing).in_dimension(dimension)
 
 
@@ -266,12 +281,14 @@ def _middle_spin(
 
 def _free_spin(body: RigidBody, attitude: np.ndarray, momentum: np.ndarray) -> np.ndarray:
     """omega (3,) of the free axes: those rows and columns of R I R^T omega = L; about all others there is none."""
-    free = np.flatnonzero(body.turns)
-    spin = np.zeros(3)
-    if len(free):
-        rotation = rotation_of(attitude)
-        inertia = rotation @ body.inertia @ rotation.T
-        spin[free] = np.linalg.solve(inertia[np.ix_(free, free)], momentum[free])
+    free, spin = body.axes, np.zeros(3)
+    if not len(free):
+        return spin
+    rotation = rotation_of(attitude)
+    if len(free) == len(spin):
+        return rotation @ (body.compliance @ (rotation.T @ momentum))
+    inertia = rotation @ body.inertia @ rotation.T
+    spin[free] = np.linalg.solve(inertia[np.ix_(free, free)], momentum[free])
     return spin
 
 
@@ -281,14 +298,21 @@ def _product(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.array([[w, -x, -y, -z], [x, w, -z, y], [y, z, w, -x], [z, -y, x, w]]) @ b
 
 
+def cross(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+    """a x b of two vectors (3,)."""
+    return np.array([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+
+
 def _inverse(a: np.ndarray) -> np.ndarray:
     return a * np.array([1.0, -1.0, -1.0, -1.0])
 
 
 def _exponential(turn: np.ndarray) -> np.ndarray:
     """Quaternion of a rotation vector (3,) [rad]."""
-    angle = float(np.linalg.norm(turn))
-    return np.array([math.cos(0.5 * angle), *(0.5 * np.sinc(0.5 * angle / math.pi) * turn)])
+    x, y, z = turn
+    angle = math.hypot(x, y, z)
+    share = math.sin(0.5 * angle) / angle if angle > 0.0 else 0.5
+    return np.array([math.cos(0.5 * angle), share * x, share * y, share * z])
 
 
 def _rotation_vector(attitude: np.ndarray) -> np.ndarray:

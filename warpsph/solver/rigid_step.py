@@ -20,6 +20,7 @@ from warpsph.solver.rigid_motion import (
     RigidForces,
     RigidState,
     angular_velocity,
+    cross,
     drifted,
     holding_power,
     kicked,
@@ -120,8 +121,8 @@ class RigidStepper:
         rotation, spin = rotation_of(state.attitude), angular_velocity(body, state)
         arm = rotation @ body.offset
         force = forces.total(body)
-        torque = forces.torque(body, rotation) - np.cross(arm, force)
-        velocity = state.velocity + np.cross(spin, arm)
+        torque = forces.torque(body, rotation) - cross(arm, force)
+        velocity = state.velocity + cross(spin, arm)
         return np.array([state.position + arm, velocity, state.angle, spin, force, torque])
 
     def _poses(self) -> list[Pose]:
@@ -132,10 +133,9 @@ class RigidStepper:
         self._states = [kicked(body, state, forces, dt) for body, state, forces in together]
 
     def _sum_forces(self) -> None:
-        missing = 3 - self._dim
-        force, moment = self._model.sums()
-        force = np.pad(force, ((0, 0), (0, missing)))
-        moment = np.pad(moment, ((0, 0), (0, missing), (0, missing)))
+        count, dim = len(self._bodies), self._dim
+        force, moment = np.zeros((count, 3)), np.zeros((count, 3, 3))
+        force[:, :dim], moment[:, :dim, :dim] = self._model.sums()
         self._forces = [RigidForces(f, m, self._gravity) for f, m in zip(force, moment, strict=True)]
 
     def _find_power(self) -> None:
