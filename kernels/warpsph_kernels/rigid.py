@@ -29,6 +29,7 @@ class RigidKernels(NamedTuple):
     carry: Any
     sum_forces: Any
     settle: Any
+    turn: Any
 
 
 @cache
@@ -36,6 +37,7 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
     """Return the kernels of rigid bodies beside structures of these options."""
     arithmetic = options.arithmetic
     dim, real, vector, point = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.point
+    matrix = arithmetic.matrix
     material, widen = make_material_struct(arithmetic), make_widen(arithmetic)
     digest = hashlib.sha256(repr(options).encode()).hexdigest()[:10]
     module = f"warpsph_rigid_{arithmetic.label}_{digest}"
@@ -63,11 +65,14 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
         reference: wp.array(dtype=point),
         load: wp.array2d(dtype=vector),
         load_factor: wp.array2d(dtype=wp.float64),
+        fluid_force: wp.array(dtype=vector),
         displacement: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
         work: wp.array(dtype=wp.float64),
     ):
-        """One particle: it moves with its body, u = R X + b - X [m], and `work` [J] gains what loads do on the way.
+        """One particle: it moves with its body, u = R X + b - X [m].
+
+        `work` [J] gains what loads and fluid do on the way.
 
         Its velocity is that of the way in the step, which is what friction needs; in a step of no length that of the
         pose.
@@ -91,6 +96,8 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
                 factor = wp.float64(0.5) * (load_factor[now, k] + load_factor[now + 1, k])
                 done += factor * wp.dot(widen(load[k, i]), way)
             work[i] += mass * done
+        if wp.static(options.immersed):
+            work[i] += wp.dot(widen(fluid_force[i]), way)
         displacement[i] = u
 
     @wp.kernel(module=module, enable_backward=False)
@@ -151,4 +158,22 @@ def make_rigid_kernels(options: StructureOptions) -> RigidKernels:
             wp.float64(materials[structure[i]].density * volume[i]) * pose[wp.static(2 * dim * (dim + 1))]
         )
 
-    return RigidKernels(carry, sum_forces, settle)
+    @wp.kernel(module=module, enable_backward=False)
+    def turn(
+        offset: int,
+        members: wp.array(dtype=wp.int32),
+        body: wp.array(dtype=wp.int32),
+        poses: wp.array2d(dtype=wp.float64),
+        gradient: wp.array(dtype=matrix),
+    ):
+        """One particle: its displacement gradient H = R - I [1], which no bonds tell."""
+        n = offset + wp.tid()
+        pose = poses[body[n]]
+        H = matrix()
+        for row in range(wp.static(dim)):
+            for column in range(wp.static(dim)):
+                unit = wp.where(row == column, wp.float64(1.0), wp.float64(0.0))
+                H[row, column] = real(pose[wp.static(dim) * row + column] - unit)
+        gradient[members[n]] = H
+
+    return RigidKernels(carry, sum_forces, settle, turn)

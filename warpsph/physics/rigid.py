@@ -62,7 +62,7 @@ class RigidModel:
         self._bind(launcher, structures)
 
     def carry(self, poses: Sequence[Pose]) -> None:
-        """Bring all particles to the poses of their bodies, with the velocities of the way; add the work of loads."""
+        """Bring all particles to the poses of their bodies, with the velocities of the way; add the work of forces."""
         self._write(poses)
         self._carry.run(len(self.arrays["rigid_members"]))
 
@@ -71,6 +71,11 @@ class RigidModel:
         self._poses[:, -1] = specific_work
         self._write(poses)
         self._settle.run(len(self.arrays["rigid_members"]))
+
+    def turn(self, poses: Sequence[Pose]) -> None:
+        """Bring the displacement gradients to the poses: the strain of the structures leaves them at zero."""
+        self._write(poses)
+        self._turn.run(len(self.arrays["rigid_members"]))
 
     def sums(self) -> tuple[np.ndarray, np.ndarray]:
         """Force without gravity (bodies, dim) [N] and its moment tensor r (x) f (bodies, dim, dim) [N m], r at rest."""
@@ -92,7 +97,7 @@ class RigidModel:
         members, body, poses, ranges, origins, sums = self.arrays.values()
         matter = (r.materials, r.structure, r.volume, r.position)
         gravity = structures.options.arithmetic.vector(*structures.gravity)
-        loads = (r.load, t.load_factor)
+        loads = (r.load, t.load_factor, t.fluid_force)
         moved = (s.displacement, s.velocity, s.work)
         followers = (members, body, poses)
         self._carry = bind(
@@ -102,6 +107,7 @@ class RigidModel:
             "rigid forces", kernels.sum_forces, gravity, ranges, origins, *matter, s.acceleration, sums
         )
         self._settle = bind("rigid motion", kernels.settle, *followers, *matter, s.velocity, s.work)
+        self._turn = bind("rigid motion", kernels.turn, *followers, t.gradient)
 
 
 def _blocks(ranges: Sequence[tuple[int, int]]) -> list[tuple[int, int, int]]:

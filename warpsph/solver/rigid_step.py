@@ -56,8 +56,9 @@ class RigidStepper:
         self._model.carry(self._poses())
 
     def begin(self, time: float, dt: float) -> None:
-        """The coming steps begin at a time and have this size [s]."""
-        self._time, self._dt = time, dt
+        """The coming steps begin at a time and have this size [s], with the accelerations that there are now."""
+        self._dt = dt
+        self._sense(time)
 
     def drift(self) -> None:
         """Advance the velocities over half a step and the bodies over the whole, and their particles with them."""
@@ -74,13 +75,14 @@ class RigidStepper:
         self._kick(half)
         self._find_power()
         mass = np.array([body.mass for body in self._bodies])
-        self._model.settle(self._poses(), half * (before + self._power) / mass)
+        poses = self._poses()
+        self._model.settle(poses, half * (before + self._power) / mass)
+        self._model.turn(poses)
 
-    def sense(self, time: float) -> None:
-        """Sum the forces at the particles' present accelerations, of a time [s]."""
-        self._time = time
-        self._sum_forces()
-        self._find_power()
+    def find_forces(self, time: float) -> None:
+        """Sum the forces at the particles' present accelerations, of a time [s]; their strain has just been found."""
+        self._sense(time)
+        self._model.turn(self._poses())
 
     def quickest(self) -> float:
         """The largest angular velocity, or frequency of swinging, of all bodies [rad/s]."""
@@ -107,15 +109,13 @@ class RigidStepper:
     def save(self) -> dict[str, Any]:
         """The rigid bodies' part of a checkpoint: each quantity of all bodies in one array."""
         names = [member.name for member in fields(RigidState)]
-        columns = {f"rigid_{name}": np.array([getattr(s, name) for s in self._states]) for name in names}
-        return columns | {"rigid_power": self._power}
+        return {f"rigid_{name}": np.array([getattr(s, name) for s in self._states]) for name in names}
 
-    def load(self, saved: Mapping[str, Any]) -> None:
-        """Go on from what `save` returned; the state of the structures has been restored."""
+    def load(self, saved: Mapping[str, Any], time: float) -> None:
+        """Go on from what `save` returned at a time [s]; the state of the structures has been restored."""
         columns = [np.asarray(saved[f"rigid_{member.name}"]) for member in fields(RigidState)]
         self._states = [RigidState(*(column[k] for column in columns)) for k in range(len(self._bodies))]
-        self._sum_forces()
-        self._power = np.asarray(saved["rigid_power"])
+        self.find_forces(time)
 
     def _motion(self, body: RigidBody, state: RigidState, forces: RigidForces) -> np.ndarray:
         rotation, spin = rotation_of(state.attitude), angular_velocity(body, state)
@@ -131,6 +131,11 @@ class RigidStepper:
     def _kick(self, dt: float) -> None:
         together = zip(self._bodies, self._states, self._forces, strict=True)
         self._states = [kicked(body, state, forces, dt) for body, state, forces in together]
+
+    def _sense(self, time: float) -> None:
+        self._time = time
+        self._sum_forces()
+        self._find_power()
 
     def _sum_forces(self) -> None:
         count, dim = len(self._bodies), self._dim

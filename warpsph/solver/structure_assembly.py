@@ -176,7 +176,10 @@ def _rest_position(scene: Scene, sampled: SampledSet) -> np.ndarray:
 
 
 def _code_of(scene: Scene, name: str) -> tuple[str, bool]:
+    """Law and plane state; of rigid bodies that law has no effect but to show no stress in a rotation."""
     structure = scene.structures[name]
+    if structure.rigid is not None:
+        return "st_venant_kirchhoff", False
     return structure.material.law, structure.plane == "stress"
 
 

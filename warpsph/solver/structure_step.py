@@ -66,7 +66,7 @@ class StructureStepper:
             self._contact.start()
         self._model.accelerate()
         if self._rigid:
-            self._rigid.sense(self.time)
+            self._rigid.find_forces(self.time)
         self.survey()
 
     def find_forces_again(self) -> None:
@@ -74,7 +74,7 @@ class StructureStepper:
         self._set_clock(0.0)
         self._model.strain()
         if self._rigid:
-            self._rigid.sense(self.time)
+            self._rigid.find_forces(self.time)
         self.survey()
 
     def step(self) -> StepReport:
@@ -263,7 +263,7 @@ class StructureStepper:
         self._laws.write(self.time, 0.0)
         self.find_forces_again()
         if self._rigid:
-            self._rigid.load(saved)
+            self._rigid.load(saved, self.time)
         if self._contact:
             self._contact.load(saved)
 
