@@ -151,6 +151,8 @@ class StructureFields:
     def _reaction(self) -> np.ndarray:
         """Force of clamps on their particles (n, dim) [N]: what moves them as prescribed, less all other forces."""
         held = 1.0 - host_view(self._model.reference.free).astype(np.float64)
+        for body in self._parts.rigid.bodies if self._parts.rigid else ():
+            held[body.first : body.first + body.count] = 0.0
         return (
             self._parts.mass[:, None] * held * (self._prescribed_acceleration() - self._state("acceleration"))
         )
