@@ -361,3 +361,42 @@ def test_a_velocity_that_the_body_cannot_have_is_refused(velocity, rigid):
 def test_a_row_of_particles_does_not_turn_about_itself():
     with pytest.raises(SceneError, match=r"structures\.block\.rigid\.inertia"):
         rigid_block((0.4, 0.1, 0.1))
+
+
+def immersed(precision) -> Simulation:
+    """A light box that moves and turns inside a block of water, both without gravity and walls."""
+    box = region((0.4, 0.3), (0.6, 0.5))
+    water = {"type": "difference", "base": region((0.0, 0.0), (1.0, 0.8)), "subtract": [box]}
+    velocity = ["1 - 5*(y-0.4)", "0.5 + 5*(x-0.5)"]
+    float_ = body((0.4, 0.3), (0.6, 0.5), velocity=velocity, rigid={"mass": 20.0})
+    return simulate(
+        touching(
+            {"float": float_},
+            spacing=0.025,
+            contact=None,
+            fluids={"water": {"shape": water, "density": 1000.0}},
+            numerics={"precision": precision},
+        )
+    )
+
+
+@pytest.mark.parametrize(("precision", "rounding"), [("single", 1e-6), ("double", 1e-14)])
+def test_what_water_loses_a_rigid_body_gains(precision, rounding):
+    """Momentum of both together to rounding, while the body gives most of its own to the water."""
+    simulation = immersed(precision)
+    before = np.array(simulation.ledger().momentum)
+    simulation.advance(0.1)
+    assert motion(simulation, "float")["velocity"][0] < 0.5
+    assert simulation.ledger().momentum == pytest.approx(before, abs=rounding * np.linalg.norm(before))
+
+
+def test_a_coupled_run_that_is_interrupted_ends_with_the_same_bits():
+    whole = immersed("single")
+    whole.advance(0.02)
+    saved = {name: np.array(value) for name, value in whole.save_state().items()}
+    whole.advance(0.04)
+    resumed = immersed("single")
+    resumed.load_state(saved)
+    resumed.advance(0.04)
+    for name, value in whole.save_state().items():
+        assert np.array_equal(value, resumed.save_state()[name]), name
