@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from warpsph.frame import SetFrame
 from warpsph.scene.errors import SceneError
+from warpsph.scene.rigid import Rigid
 from warpsph.scene.schema import Scene
 
 DENSITY = 1000.0
@@ -198,17 +199,12 @@ def test_a_rigid_body_tells_the_rows_of_its_particles(dimension):
     """Components of the plane are x and y, and z of what turns."""
     rest = lattice([0.0] * dimension, [1.0, *[0.4] * (dimension - 1)])
     rows = np.arange(18.0).reshape(6, 3)
-    scene = beam_scene({"type": "momentum"}, dimension).model_dump()
-    scene["structures"]["beam"] |= {"rigid": {}, "clamps": {}}
-    scene["probes"]["probe"] = {"type": "rigid_body", "structure": "beam"}
-    probe = probe_of(Scene.model_validate(scene))
-    values = dict(
-        zip(
-            probe.columns,
-            probe.evaluate(frame_of(body(rest, rigid_motion=np.tile(rows, (len(rest), 1, 1))))),
-            strict=True,
-        )
-    )
+    flexible = beam_scene({"type": "momentum"}, dimension).structures["beam"]
+    rigid = flexible.model_copy(update={"rigid": Rigid(), "clamps": {}})
+    spec = {"type": "rigid_body", "structure": "beam"}
+    probe = probe_of(beam_scene(spec, dimension, structures={"beam": rigid}))
+    frame = frame_of(body(rest, rigid_motion=np.tile(rows, (len(rest), 1, 1))))
+    values = dict(zip(probe.columns, probe.evaluate(frame), strict=True))
     unit = "N/m" if dimension == 2 else "N"
     assert values["probe.position_x[m]"] == 0.0
     assert values["probe.velocity_y[m/s]"] == 4.0
