@@ -77,6 +77,7 @@ OBJECTS = (
     ("boundaries.*", "Boundary"),
     ("structures.*", "Structure"),
     ("structures.*.material", "Material"),
+    ("structures.*.rigid", "Rigid"),
     ("structures.*.clamps.*", "Clamp"),
     ("numerics.structure", "StructureNumerics"),
     ("contact", "Contact"),

@@ -10,6 +10,7 @@ from scipy.spatial.transform import Rotation
 
 from warpsph.frame import SetFrame
 from warpsph.scene.errors import SceneError
+from warpsph.scene.rigid import Rigid
 from warpsph.scene.schema import Scene
 
 DENSITY = 1000.0
@@ -191,6 +192,26 @@ def test_momentum_of_a_rigid_motion(dimension):
     # the lattice's own second moments: those of its particles, each a point of mass
     inertia = mass * np.mean(np.sum(rest[:, :2] ** 2, axis=1))
     assert values[-1] == pytest.approx(2.0 * inertia - mass * 0.2)
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_a_rigid_body_tells_the_rows_of_its_particles(dimension):
+    """Components of the plane are x and y, and z of what turns."""
+    rest = lattice([0.0] * dimension, [1.0, *[0.4] * (dimension - 1)])
+    rows = np.arange(18.0).reshape(6, 3)
+    flexible = beam_scene({"type": "momentum"}, dimension).structures["beam"]
+    rigid = flexible.model_copy(update={"rigid": Rigid(), "clamps": {}})
+    spec = {"type": "rigid_body", "structure": "beam"}
+    probe = probe_of(beam_scene(spec, dimension, structures={"beam": rigid}))
+    frame = frame_of(body(rest, rigid_motion=np.tile(rows, (len(rest), 1, 1))))
+    values = dict(zip(probe.columns, probe.evaluate(frame), strict=True))
+    unit = "N/m" if dimension == 2 else "N"
+    assert values["probe.position_x[m]"] == 0.0
+    assert values["probe.velocity_y[m/s]"] == 4.0
+    assert values["probe.angle_z[rad]"] == 8.0
+    assert values["probe.angular_velocity_z[rad/s]"] == 11.0
+    assert values[f"probe.force_y[{unit}]"] == 13.0
+    assert values["probe.torque_z[N m/m]" if dimension == 2 else "probe.torque_z[N m]"] == 17.0
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
 from warpsph.probes.reach import ReachProbe
 from warpsph.probes.reaction import ReactionProbe
+from warpsph.probes.rigid_body import RigidBodyProbe
 from warpsph.probes.rotation import RotationProbe
 from warpsph.probes.structure_energy import StructureEnergyProbe
 from warpsph.probes.volume import VolumeProbe
@@ -32,6 +33,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "displacement": DisplacementProbe,
     "rotation": RotationProbe,
     "reaction": ReactionProbe,
+    "rigid_body": RigidBodyProbe,
     "structure_energy": StructureEnergyProbe,
     "momentum": MomentumProbe,
 }

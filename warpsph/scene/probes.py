@@ -222,6 +222,26 @@ class ReactionProbe(_Probe):
         return _force_columns(dimension)
 
 
+class RigidBodyProbe(_Probe):
+    """Motion of a rigid body, and the force and torque of all that acts on it but what holds its axes.
+
+    Position and velocity are those of its centre of mass, and so is the torque about it. The angle is the integral of
+    the angular velocity: in the plane it counts turns, in space each component is that of an axis fixed in space.
+    """
+
+    type: Literal["rigid_body"] = "rigid_body"
+    structure: Name
+    """The structure, which has to be rigid."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        axes, about = AXES[:dimension], AXES if dimension == 3 else ("z",)
+        place = tuple(f"position_{axis}[m]" for axis in axes)
+        place += tuple(f"velocity_{axis}[m/s]" for axis in axes)
+        turn = tuple(f"angle_{axis}[rad]" for axis in about)
+        turn += tuple(f"angular_velocity_{axis}[rad/s]" for axis in about)
+        return place + turn + _force_columns(dimension)
+
+
 class StructureEnergyProbe(_Probe):
     """Energies of structures.
 
@@ -274,6 +294,7 @@ Probe = Annotated[
     | DisplacementProbe
     | RotationProbe
     | ReactionProbe
+    | RigidBodyProbe
     | StructureEnergyProbe
     | MomentumProbe,
     Field(discriminator="type"),

@@ -1,4 +1,4 @@
-"""Flexible structures: their material, where they are held, and what acts on them."""
+"""Structures: their material, where they are held, and what acts on them."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from pydantic import Field
 
 from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.motion import Motion
+from warpsph.scene.rigid import Rigid
 from warpsph.scene.shapes import Shape
 from warpsph.scene.types import (
     Axis,
@@ -116,7 +117,7 @@ Load = Annotated[ForceLoad | TractionLoad | BodyLoad, Field(discriminator="type"
 
 
 class Structure(SceneModel):
-    """A flexible body."""
+    """A flexible or rigid body."""
 
     shape: Shape
     """Where it is at rest."""
@@ -127,12 +128,15 @@ class Structure(SceneModel):
     slip: Literal["free_slip", "no_slip"] = "free_slip"
     """Tangential condition on the fluid. Default: free_slip."""
 
+    rigid: Rigid | None = None
+    """What makes it a rigid body; null: it is flexible. Default: null."""
+
     plane: Literal["strain", "stress"] = "strain"
     """State across the plane in two dimensions: no strain, or no stress. Default: strain."""
 
     velocity: VectorField | None = None
-    """Initial velocity [m/s]; each component is a number or an expression in x, y, z [m]; null: at rest.
-    Default: null."""
+    """Initial velocity [m/s]; each component is a number or an expression in x, y, z [m]; null: at rest. That of a
+    rigid body has to be one of a rigid motion. Default: null."""
 
     displacement: VectorField | None = None
     """Initial displacement [m], in the same way. Default: null."""

@@ -39,6 +39,7 @@ from warpsph.scene.schema import Scene
 from warpsph.scene.structures import Load
 from warpsph.scene.types import AXES
 from warpsph.solver.contact_assembly import ContactParts, assemble_contact
+from warpsph.solver.rigid_assembly import RigidParts, assemble_rigid, density_of
 
 
 @dataclass(frozen=True)
@@ -87,6 +88,7 @@ class StructureParts:
     mass: np.ndarray
     contact: ContactParts | None
     wall_motions: Mapping[str, RigidMotion]
+    rigid: RigidParts | None = None
 
 
 def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> StructureParts:
@@ -95,10 +97,10 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     bodies = _bodies(scene, sets)
     volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
     clamps = tuple(_clamps(scene, bodies))
-    rigid = _rigid(scene, clamps, len(volume))
+    rigid = _rigid(scene, bodies, clamps, len(volume))
     bonds = _bonds(scene, bodies, volume, rigid)
     gradients = _gradients(scene, bodies, volume, rigid, bonds)
-    density = np.concatenate([np.full(b.count, scene.structures[b.name].material.density) for b in bodies])
+    density = np.concatenate([np.full(b.count, density_of(scene, b.sampled)) for b in bodies])
     mass = density * volume
     loads = list(_loads(scene, bodies))
     wall_motions = rigid_motions(scene) if scene.contact else {}
@@ -136,7 +138,8 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         ordered = [body.sampled for body in bodies]
         contact = assemble_contact(scene, sets, ordered, mass, columns, model, bond_radius(scene), launcher)
     factors = tuple(spec.factor for spec, _ in loads)
-    return StructureParts(model, bodies, clamps, factors, bonds, mass, contact, wall_motions)
+    among = assemble_rigid(scene, [(body.first, body.sampled) for body in bodies], model, launcher)
+    return StructureParts(model, bodies, clamps, factors, bonds, mass, contact, wall_motions, among)
 
 
 def is_static(scene: Scene) -> bool:
@@ -173,7 +176,10 @@ def _rest_position(scene: Scene, sampled: SampledSet) -> np.ndarray:
 
 
 def _code_of(scene: Scene, name: str) -> tuple[str, bool]:
+    """Law and plane state; of rigid bodies that law has no effect but to show no stress in a rotation."""
     structure = scene.structures[name]
+    if structure.rigid is not None:
+        return "st_venant_kirchhoff", False
     return structure.material.law, structure.plane == "stress"
 
 
@@ -234,7 +240,7 @@ def _loads(scene: Scene, bodies: Sequence[Body]) -> Iterator[tuple[Load, tuple[B
     lattices = lattices_of(scene)
     for body in bodies:
         structure = scene.structures[body.name]
-        mass = structure.material.density * body.sampled.volume
+        mass = density_of(scene, body.sampled) * body.sampled.volume
         for name, load in structure.loads.items():
             key = f"structures.{body.name}.loads.{name}"
             place = (structure.shape, body.sampled.position, mass, lattices[body.name], key)
@@ -253,11 +259,11 @@ def _reference(
     device: Any,
 ) -> StructureReference:
     count, dim = len(volume), scene.dimension
-    free, clamp_index = _constraints(scene, clamps, count)
+    free, clamp_index = _constraints(scene, bodies, clamps, count)
     table = np.zeros((max(len(loads), 1), count if loads else 1, dim))
     for row, (body, specific) in enumerate(loads):
         table[row, body.range] = specific
-    materials = [_material(scene, arithmetic, body.name) for body in bodies]
+    materials = [_material(scene, arithmetic, body.sampled) for body in bodies]
     owner = np.repeat(np.arange(len(bodies)), [body.count for body in bodies])
     nothing = np.zeros((1, 1, dim))
     bond_records = np.concatenate([bonds.vector, bonds.weight[..., None]], axis=2)
@@ -283,32 +289,39 @@ def _reference(
     )
 
 
-def _material(scene: Scene, arithmetic: Arithmetic, name: str) -> Any:
-    structure = scene.structures[name]
+def _material(scene: Scene, arithmetic: Arithmetic, sampled: SampledSet) -> Any:
+    structure = scene.structures[sampled.name]
     material, numbers = structure.material, make_material_struct(arithmetic)()
     numbers.lame, numbers.shear_modulus = material.lame, material.shear_modulus
     numbers.bulk_modulus = material.lame + 2.0 / 3.0 * material.shear_modulus
-    numbers.density = material.density
+    numbers.density = density_of(scene, sampled)
     numbers.penalty = scene.numerics.structure.hourglass * material.youngs_modulus
     numbers.damping = structure.damping
     return numbers
 
 
-def _rigid(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> np.ndarray:
-    """Whether a clamp prescribes all components of each particle's displacement, shape (n,)."""
+def _rigid(scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], count: int) -> np.ndarray:
+    """Whether each particle belongs to a rigid body, or a clamp prescribes all its components, shape (n,)."""
     rigid = np.zeros(count, dtype=bool)
+    for body in bodies:
+        rigid[body.range] = scene.structures[body.name].rigid is not None
     for clamp in clamps:
         if scene.structures[clamp.structure].clamps[clamp.name].is_whole:
             rigid[clamp.particles] = True
     return rigid
 
 
-def _constraints(scene: Scene, clamps: Sequence[HeldRegion], count: int) -> tuple[np.ndarray, np.ndarray]:
+def _constraints(
+    scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], count: int
+) -> tuple[np.ndarray, np.ndarray]:
     """Mask of free components (n, dim), and the index (n,) of each particle's moving clamp, -1 without one.
 
-    Where clamps overlap the later one in the scene moves the particle.
+    Where clamps overlap the later one in the scene moves the particle. A rigid body moves its particles itself.
     """
     free, index = np.ones((count, scene.dimension)), np.full(count, -1)
+    for body in bodies:
+        if scene.structures[body.name].rigid is not None:
+            free[body.range] = 0.0
     moving = [clamp for clamp in clamps if clamp.motion is not None]
     for clamp in clamps:
         axes = scene.structures[clamp.structure].clamps[clamp.name].axes

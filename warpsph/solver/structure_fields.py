@@ -21,8 +21,14 @@ OBSERVED = frozenset({"strain_energy", "hourglass_energy", "cauchy_stress", "von
 class StructureFields:
     """Evaluates fields of the present state; bodies lie in the order of their laws, sets in that of the scene."""
 
-    def __init__(self, scene: Scene, parts: StructureParts, now: Callable[[], float]) -> None:
-        """`now` tells the simulated time [s]."""
+    def __init__(
+        self,
+        scene: Scene,
+        parts: StructureParts,
+        now: Callable[[], float],
+        rigid_motion: Callable[[], Mapping[str, np.ndarray]] = dict,
+    ) -> None:
+        """`now` tells the simulated time [s], `rigid_motion` how the rigid bodies move (6, 3), by name."""
         self._scene = scene
         self._parts = parts
         self._now = now
@@ -45,6 +51,8 @@ class StructureFields:
             "green_lagrange_strain": lambda: green_lagrange(self._gradient()),
             "volume_ratio": lambda: np.linalg.det(np.eye(scene.dimension) + self._gradient()),
         }
+        if parts.rigid:
+            self._makers = {**self._makers, "rigid_motion": lambda: self._rigid_motion(rigid_motion())}
         self._motions = rigid_motions(scene)
         self._touched = {patch.name: patch for patch in parts.contact.walls} if parts.contact else {}
 
@@ -126,6 +134,14 @@ class StructureFields:
         contact = self._parts.contact
         return contact.model.energy() if contact else np.zeros_like(self._parts.mass)
 
+    def _rigid_motion(self, motion: Mapping[str, np.ndarray]) -> np.ndarray:
+        """How the body of each particle moves (n, 6, 3), zero of flexible ones."""
+        rows = np.zeros((len(self._parts.mass), 6, 3))
+        for body in self._parts.bodies:
+            if body.name in motion:
+                rows[body.range] = motion[body.name]
+        return rows
+
     def _host_reference(self) -> np.ndarray:
         return host_view(self._model.reference.position)
 
@@ -135,6 +151,8 @@ class StructureFields:
     def _reaction(self) -> np.ndarray:
         """Force of clamps on their particles (n, dim) [N]: what moves them as prescribed, less all other forces."""
         held = 1.0 - host_view(self._model.reference.free).astype(np.float64)
+        for body in self._parts.rigid.bodies if self._parts.rigid else ():
+            held[body.first : body.first + body.count] = 0.0
         return (
             self._parts.mass[:, None] * held * (self._prescribed_acceleration() - self._state("acceleration"))
         )

@@ -18,6 +18,7 @@ from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import SUB_STEPS, arrays_in
 from warpsph.scene.schema import Scene
 from warpsph.solver.contact_step import ContactStepper
+from warpsph.solver.rigid_step import RigidStepper
 from warpsph.solver.stability import largest_frequency
 from warpsph.solver.structure_assembly import StructureParts
 from warpsph.solver.system import StepReport
@@ -27,6 +28,8 @@ STIFFNESS_GRADE = 1.1
 """Ratio of two stiffnesses between which the step does not tell a difference."""
 SHORTEST = 1000.0
 """By how much a step may be shortened where the state has changed faster than was foreseen."""
+TURN = 0.1
+"""Angle [rad] by which a rigid body may turn in a step, or its phase where forces could make it swing."""
 
 
 class StructureStepper:
@@ -35,8 +38,10 @@ class StructureStepper:
     def __init__(self, scene: Scene, parts: StructureParts) -> None:
         self._model = parts.model
         self._contact = ContactStepper(parts.contact) if parts.contact else None
+        self._rigid = RigidStepper(parts.rigid, scene.gravity) if parts.rigid else None
         self._cfl = scene.numerics.structure.cfl
         self._max_step = scene.time.max_step or math.inf
+        self._end = scene.time.end
         self._laws = TimeLaws(parts)
         self._extremes = np.zeros(5)
         self.time = 0.0
@@ -47,8 +52,10 @@ class StructureStepper:
     def start(self) -> None:
         """Measure the stability limit at rest, then find the forces of the initial state."""
         self._set_clock(0.0)
-        self.frequency = largest_frequency(self._model)
+        self.frequency = largest_frequency(self._model) if self._is_flexible or self._contact else 0.0
         self._laws.write(self.time, 0.0)
+        if self._rigid:
+            self._rigid.start()
         self.find_forces()
 
     def find_forces(self) -> None:
@@ -58,12 +65,16 @@ class StructureStepper:
         if self._contact:
             self._contact.start()
         self._model.accelerate()
+        if self._rigid:
+            self._rigid.find_forces(self.time)
         self.survey()
 
     def find_forces_again(self) -> None:
         """Bring stresses and extremes to the time of a state that has been restored with its accelerations."""
         self._set_clock(0.0)
         self._model.strain()
+        if self._rigid:
+            self._rigid.find_forces(self.time)
         self.survey()
 
     def step(self) -> StepReport:
@@ -123,10 +134,14 @@ class StructureStepper:
     def move(self) -> None:
         """Advance by one step; time laws stand."""
         self._model.drift()
+        if self._rigid:
+            self._rigid.drift()
         self._model.strain()
         if self._contact:
             self._contact.push()
         self._model.accelerate()
+        if self._rigid:
+            self._rigid.kick()
 
     def choose_step(self) -> tuple[float, int, str]:
         """Size [s], number and limit of the next steps: as the stiffness of the present state allows.
@@ -134,27 +149,40 @@ class StructureStepper:
         All steps up to the time to land on have one size. A size that changes to and fro would pump energy into the
         fastest waves, for which a step is a large part of their period.
         """
-        dt, limit = self.stable_step, "elastic"
-        if self._max_step < dt:
-            dt, limit = self._max_step, "max_step"
+        limits = self.limits | {"max_step": self._max_step}
+        limit = min(limits, key=lambda name: limits[name])
+        dt = limits[limit]
         left = self.target - self.time
         if math.isinf(left):
-            return dt, SUB_STEPS, limit
+            return min(dt, self._end), SUB_STEPS, limit
         count = max(math.ceil(left / dt * (1.0 - 1e-9)), 1)
         return left / count, min(count, SUB_STEPS), "frame" if count <= SUB_STEPS else limit
 
     @property
     def stable_step(self) -> float:
-        """The step that the stiffness of the present state allows [s]: cfl 2 / omega.
+        """The step that the present state allows [s]; infinite where nothing limits it."""
+        return min(self.limits.values())
 
-        The stiffness is rounded up to a power of STIFFNESS_GRADE, so that the step seldom changes.
+    @property
+    def limits(self) -> dict[str, float]:
+        """The steps that the present state allows [s], by what limits them.
+
+        Elastic: cfl 2 / omega of the flexible structures, stiffened by contact; contact: the same of the material whose
+        stiffness contact has, where all structures are rigid; rotation: what turns rigid bodies by a small angle. The
+        stiffness is rounded up to a power of STIFFNESS_GRADE, so that the step seldom changes.
         """
         stiffening = max(float(self._extremes[STIFFENING]), 1.0)
         grade = math.ceil(math.log(stiffening) / math.log(STIFFNESS_GRADE) - 1e-3)
         square = self.frequency**2 * STIFFNESS_GRADE**grade
         if self._contact:
             square = self._contact.raised(square)
-        return self._cfl * 2.0 / math.sqrt(square)
+        limits = {"elastic" if self._is_flexible else "contact": _over(self._cfl * 2.0, math.sqrt(square))}
+        return limits | ({"rotation": _over(TURN, self._rigid.quickest())} if self._rigid else {})
+
+    @property
+    def _is_flexible(self) -> bool:
+        """Whether some structure is not rigid."""
+        return self._rigid is None or self._rigid.count < self._model.count
 
     def is_unstable(self, dt: float) -> bool:
         """Whether a step [s] is beyond the stability limit of the present state."""
@@ -164,6 +192,8 @@ class StructureStepper:
         """Set step size and damping, and the values of time laws for the coming steps."""
         self._set_clock(dt, damping)
         self._laws.write(self.time, dt)
+        if self._rigid:
+            self._rigid.begin(self.time, dt)
 
     def survey(self) -> None:
         """Find the extremes of the state."""
@@ -204,6 +234,8 @@ class StructureStepper:
         self._before = {name: np.array(host_view(a)) for name, a in arrays_in(self._model.state).items()}
         if self._contact:
             self._contact.keep()
+        if self._rigid:
+            self._rigid.keep()
 
     def return_to_kept(self) -> None:
         """Go back to the state before the last steps."""
@@ -211,6 +243,8 @@ class StructureStepper:
             write_array(array, self._before[name])
         if self._contact:
             self._contact.return_to_kept()
+        if self._rigid:
+            self._rigid.return_to_kept()
 
     def _set_clock(self, dt: float, damping: float = 0.0) -> None:
         values = np.zeros(3)
@@ -219,13 +253,25 @@ class StructureStepper:
 
     def save(self) -> dict[str, Any]:
         """The stepper's own part of a checkpoint."""
-        own = {"time": self.time, "frequency": self.frequency}
-        return own | self._contact.save() if self._contact else own
+        own: dict[str, Any] = {"time": self.time, "frequency": self.frequency}
+        own |= self._rigid.save() if self._rigid else {}
+        return own | (self._contact.save() if self._contact else {})
 
     def load(self, saved: Mapping[str, Any]) -> None:
         """Go on from what `save` returned; the state's arrays have been restored."""
         self.time, self.frequency = float(saved["time"]), float(saved["frequency"])
         self._laws.write(self.time, 0.0)
         self.find_forces_again()
+        if self._rigid:
+            self._rigid.load(saved, self.time)
         if self._contact:
             self._contact.load(saved)
+
+    def rigid_motion(self) -> dict[str, np.ndarray]:
+        """How rigid bodies move, see `RigidStepper.motion`; none without them."""
+        return self._rigid.motion() if self._rigid else {}
+
+
+def _over(value: float, rate: float) -> float:
+    """A value over a rate, infinite where the rate is zero."""
+    return value / rate if rate > 0.0 else math.inf

@@ -13,6 +13,7 @@ from warpsph.frame import SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.contact import UNITS as CONTACT_UNITS
+from warpsph.physics.rigid import UNITS as RIGID_UNITS
 from warpsph.physics.structure import UNITS, arrays_in
 from warpsph.sampling import SampledSet
 from warpsph.scene.schema import Scene
@@ -43,7 +44,7 @@ class StructureSystem:
         make = RelaxationStepper if is_static(scene) else StructureStepper
         self.stepper: StructureStepper = make(scene, self.parts)
         self.stepper.start()
-        self._fields = StructureFields(scene, self.parts, lambda: self.time)
+        self._fields = StructureFields(scene, self.parts, lambda: self.time, self.stepper.rigid_motion)
 
     @property
     def time(self) -> float:
@@ -146,10 +147,13 @@ class StructureSystem:
         contact = self.parts.contact
         if contact:
             arrays |= contact.model.named_arrays()
+        if self.parts.rigid:
+            arrays |= self.parts.rigid.model.arrays
         sizes = {name: int(array.capacity) for name, array in arrays.items()}
-        units = UNITS | CONTACT_UNITS
-        dt = self.stepper.stable_step
-        steps = math.ceil(self._scene.time.end / dt)
+        units = UNITS | CONTACT_UNITS | RIGID_UNITS
+        limits = {name: dt for name, dt in self.stepper.limits.items() if math.isfinite(dt)}
+        end = self._scene.time.end
+        steps = math.ceil(end / min(limits.values(), default=end))
         return {
             "sets": [{"name": name, "kind": kind, "particles": count} for name, kind, count in self.sets],
             "particles": self.particle_count,
@@ -160,7 +164,7 @@ class StructureSystem:
             "neighbours": float(self.parts.bonds.count.mean()),
             "bytes_per_particle": sum(sizes.values()) / max(self.particle_count, 1),
             "sound_speed_m_s": self.sound_speed,
-            "step_limits_s": {"elastic": dt},
+            "step_limits_s": limits,
             "estimated_steps": steps,
             "estimated_wall_s": steps * self.particle_count / TYPICAL_RATE,
         }
@@ -168,11 +172,14 @@ class StructureSystem:
     def _passes(self) -> list[str]:
         timed = ["structure time laws"] if self.parts.model.has_time_laws else []
         touching = ["contact places", "contact sensing", "contact forces"] if self.parts.contact else []
+        rigid = self.parts.rigid is not None
         return [
             "structure drift",
+            *(["rigid motion"] if rigid else []),
             "structure stress",
             *touching,
             "structure forces",
+            *(["rigid forces"] if rigid else []),
             *timed,
             "structure survey",
         ]

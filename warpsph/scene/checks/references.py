@@ -23,6 +23,7 @@ from warpsph.scene.probes import (
     Probe,
     ReachProbe,
     ReactionProbe,
+    RigidBodyProbe,
     RotationProbe,
     StructureEnergyProbe,
     VolumeProbe,
@@ -51,6 +52,8 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
         yield from _kind_problems(probe, names, key)
         yield from _set_problems(probe, names, key)
         yield from _clamp_problems(probe, scene, key)
+        if isinstance(probe, RigidBodyProbe) and probe.structure in scene.structures:
+            yield from _rigid_problems(probe, scene, key)
         axis = getattr(probe, "axis", None)
         if isinstance(probe, RotationProbe):
             yield from _rotation_problems(probe, scene, key)
@@ -74,6 +77,14 @@ def _clamp_problems(probe: Probe, scene: Scene, key: str) -> Iterator[Problem]:
         clamps = scene.structures[probe.structure].clamps
         if clamp not in clamps:
             yield unknown_name(f"{key}.{name}", "clamp", clamp, clamps)
+
+
+def _rigid_problems(probe: RigidBodyProbe, scene: Scene, key: str) -> Iterator[Problem]:
+    if scene.structures[probe.structure].rigid is None:
+        message = f"the structure {probe.structure!r} is flexible"
+        rigid = ", ".join(name for name, structure in scene.structures.items() if structure.rigid is not None)
+        allowed = rigid or "nothing: no structure of the scene is rigid"
+        yield Problem.at(f"{key}.structure", message, allowed, probe.structure)
 
 
 def _rotation_problems(probe: RotationProbe, scene: Scene, key: str) -> Iterator[Problem]:
@@ -107,6 +118,7 @@ def _set_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Prob
             DisplacementProbe(structure=str(structure))
             | RotationProbe(structure=str(structure))
             | ReactionProbe(structure=str(structure))
+            | RigidBodyProbe(structure=str(structure))
             | StructureEnergyProbe(structure=str(structure))
             | MomentumProbe(structure=str(structure))
         ) if structure not in names.structures:

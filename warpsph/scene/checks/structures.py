@@ -15,6 +15,7 @@ from warpsph.scene.checks.common import (
     unknown_name,
     vector_field_problems,
 )
+from warpsph.scene.checks.rigid import rigid_problems
 from warpsph.scene.errors import Problem
 from warpsph.scene.types import AXES
 
@@ -38,6 +39,7 @@ def structure_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield unknown_name(f"{key}.material.law", "law", structure.material.law, MATERIAL_LAWS)
         yield from _slip_problems(structure, scene, names, key)
         yield from _plane_problems(structure, scene.dimension, key)
+        yield from rigid_problems(scene, structure, key)
         for name_of_clamp, clamp in structure.clamps.items():
             yield from _clamp_problems(clamp, scene.dimension, f"{key}.clamps.{name_of_clamp}")
         for name_of_load, load in structure.loads.items():
