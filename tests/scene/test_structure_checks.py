@@ -83,6 +83,9 @@ NONSENSE = [
     ("friction: 0.0", "friction: -0.1", "contact.friction", "too small"),
 ]  # fmt: skip
 
+WATER = (
+    "fluids={water: {shape: {type: box, min: [2, 0], max: [3, 1]}, density: 1000, kinematic_viscosity: 0}}"
+)
 TOGETHER = [
     (["structures.beam.plane=stress", "structures.beam.material.law=split_neo_hookean"],
      "structures.beam.plane", "split_neo_hookean is not there for plane stress"),
@@ -90,8 +93,15 @@ TOGETHER = [
      "structures.beam", "another set has the name 'beam' already"),
     (["structures={}"], "fluids", "neither fluids nor structures"),
     (["structures={}"], "contact", "no structure to be touched"),
-    (["fluids={water: {shape: {type: box, min: [2, 0], max: [3, 1]}, density: 1000, kinematic_viscosity: 0}}"],
-     "structures", "not coupled yet"),
+    ([WATER], "numerics.structure.solution.type", "fluids move in time"),
+    ([WATER, "domain.symmetry={x_min: -1}"], "domain.symmetry", "no images"),
+    ([WATER, "structures.beam.slip=no_slip", "numerics.viscosity={type: none}"],
+     "structures.beam.slip", "without viscosity cannot stick"),
+    (["structures.beam.slip=no_slip"], "structures.beam.slip", "no fluid to stick"),
+    (["coupling.sub_steps=4"], "coupling", "nothing to couple"),
+    (["probes={load: {type: force, structure: beam}}"], "probes.load.structure", "no fluid acts"),
+    ([WATER, "probes={load: {type: force}}"], "probes.load", "one boundary or at one structure"),
+    ([WATER, "probes={load: {type: force, structure: bem}}"], "probes.load.structure", "did you mean 'beam'"),
 ]  # fmt: skip
 
 SOLID = BEAM.replace("dimension: 2", "dimension: 3").replace("plane: strain", "plane: stress")
