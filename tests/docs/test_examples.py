@@ -14,7 +14,7 @@ from registries import restored_registries
 from warpsph_kernels.materials import LAWS
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
-from warpsph import register_material
+from warpsph import Simulation, register_material
 from warpsph.laws.materials import MATERIAL_LAWS
 from warpsph.scene import scene_from_yaml
 
@@ -104,8 +104,18 @@ def test_the_readme_python_example_runs(tmp_path: Path, monkeypatch: pytest.Monk
 
 
 def test_the_readme_scene_loads() -> None:
-    (text,) = blocks("README.md", "yaml")
+    text, _ = blocks("README.md", "yaml")
     assert scene_from_yaml(text).references
+
+
+def test_the_pillar_of_the_readme_scene_may_be_a_structure() -> None:
+    text, pillar = blocks("README.md", "yaml")
+    wall = re.search(r"^  pillar:\n.*?\n(?=probes:)", text, re.DOTALL | re.MULTILINE)
+    assert wall
+    text = text.replace(wall[0], "").replace("boundary: pillar", "structure: pillar") + pillar
+    sim = Simulation(scene_from_yaml(text, overrides=["spacing=0.05"]), device="cpu")
+    sim.advance(0.02)
+    assert {kind for _, kind, _ in sim.sets} == {"fluid", "boundary", "structure"}
 
 
 @pytest.fixture(scope="module")

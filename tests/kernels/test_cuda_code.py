@@ -5,9 +5,10 @@ import warp as wp
 from warpsph_kernels import reorder
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.boundary import make_wall_kernels
-from warpsph_kernels.cells import make_cell_kernels
+from warpsph_kernels.cells import make_cell_kernels, make_list_kernel
 from warpsph_kernels.clock import make_clock_kernels
 from warpsph_kernels.density_gradient import make_density_gradient
+from warpsph_kernels.faces import make_face_kernels
 from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
 from warpsph_kernels.gradient_correction import make_finite_particle_kernels, make_renormalised_kernels
 from warpsph_kernels.particle_order import make_order_kernels
@@ -77,10 +78,13 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     make_correction = make_renormalised_kernels if dimension == 2 else make_finite_particle_kernels
     make_correction(options)
     make_sum_density(options)
+    faces = make_face_kernels(options, moving_clamps=dimension == 2)
+    sided = [make_list_kernel(arithmetic, periodic, which) for which in ("targets", "sources")]
     cells = make_cell_kernels(arithmetic, periodic).module
     clock = make_clock_kernels(arithmetic, options.state).module
     extra = [options.module_of(concept) for concept in CONCEPTS]
-    modules = (options.module, *extra, cells, clock, reorder.MODULE)
+    of_structures = [kernel.module.name for kernel in (faces.place, *sided)]
+    modules = (options.module, *extra, *of_structures, cells, clock, reorder.MODULE)
     for name in modules:
         wp.compile_aot_module(wp.get_module(name), arch=SM_80, module_dir=tmp_path, use_ptx=True)
     assert len(list(tmp_path.glob("*.ptx"))) == len(modules)
