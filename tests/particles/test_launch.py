@@ -59,3 +59,27 @@ def test_stages_are_timed():
     out = wp.zeros(10, dtype=wp.float32, device="cpu")
     launcher.bind("some stage", mark, out).run(10)
     assert launcher.seconds["some stage"] > 0.0
+
+
+@wp.kernel(module="test_launch_replay", enable_backward=False)
+def grow(offset: int, out: wp.array(dtype=wp.float64)):
+    i = offset + wp.tid()
+    out[i] = 2.0 * out[i] + wp.float64(1.0)
+
+
+@pytest.mark.parametrize("rounds", [1, 2, 5, 32])
+def test_a_replayed_sequence_is_the_same_as_round_by_round(rounds):
+    launcher, ends = Launcher("cpu", 1), []
+    for replayed in (False, True):
+        out = wp.zeros(10, dtype=wp.float64, device="cpu")
+        bound = launcher.bind("grow", grow, out)
+        bound.run(10)
+        if replayed:
+            launch.Replay(launcher, "growth", lambda bound=bound: bound.run(10)).run(rounds)
+        else:
+            for _ in range(rounds):
+                bound.run(10)
+        ends.append(out.numpy().copy())
+    assert np.array_equal(ends[0], ends[1])
+    assert ends[0][0] == 2.0 ** (rounds + 1) - 1.0
+    assert launcher.seconds["growth"] > 0.0

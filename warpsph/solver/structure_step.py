@@ -14,6 +14,7 @@ import numpy as np
 from warpsph_kernels.structure import DAMPING, STEP
 from warpsph_kernels.structure_survey import FAULTS, FLATTENING, SPEED, STIFFENING, WORST
 
+from warpsph.particles.launch import Replay
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import SUB_STEPS, arrays_in
 from warpsph.scene.schema import Scene
@@ -26,6 +27,8 @@ from warpsph.solver.time_laws import TimeLaws
 
 STIFFNESS_GRADE = 1.1
 """Ratio of two stiffnesses between which the step does not tell a difference."""
+SMALL = 4000
+"""Particles up to which the launches of a step cost about as much as what they compute, so that it is replayed."""
 SHORTEST = 1000.0
 """By how much a step may be shortened where the state has changed faster than was foreseen."""
 TURN = 0.1
@@ -48,6 +51,9 @@ class StructureStepper:
         self.target = math.inf
         self.stuck = False
         self._before: dict[str, np.ndarray] = {}
+        alone = self._contact is None and self._rigid is None
+        self._is_small = alone and parts.model.count <= SMALL and parts.model.launcher.device.is_cpu
+        self._replay: Replay | None = None
 
     def start(self) -> None:
         """Measure the stability limit at rest, then find the forces of the initial state."""
@@ -85,8 +91,7 @@ class StructureStepper:
         count = self.allowed(dt, planned)
         limit = limit if count == planned else "contact"
         end = self.target if limit == "frame" else self.time + count * dt
-        for _ in range(count):
-            self.sub_step()
+        self.make_steps(count)
         before = self.extremes["speed"]
         self.survey()
         if self.failed or self.is_unstable(dt) or not self.listed(before, dt, count):
@@ -125,6 +130,16 @@ class StructureStepper:
         """Whether the lists of contact were complete in the steps made, from the largest speed before [m/s] and now."""
         speed = max(before, self.extremes["speed"])
         return self._contact is None or self._contact.note(speed, dt, count)
+
+    def make_steps(self, count: int) -> None:
+        """Advance by so many steps of the size that was begun with."""
+        if self._replay:
+            self._replay.run(count)
+            return
+        for _ in range(count):
+            self.sub_step()
+        if self._is_small:
+            self._replay = Replay(self._model.launcher, "structure steps", self.sub_step)
 
     def sub_step(self) -> None:
         """Advance by one step of the size that was begun with."""
