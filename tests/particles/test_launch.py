@@ -64,7 +64,7 @@ def test_stages_are_timed():
 @wp.kernel(module="test_launch_replay", enable_backward=False)
 def grow(offset: int, out: wp.array(dtype=wp.float64)):
     i = offset + wp.tid()
-    out[i] = 2.0 * out[i] + wp.float64(1.0)
+    out[i] = wp.float64(2.0) * out[i] + wp.float64(1.0)
 
 
 @pytest.mark.parametrize("rounds", [1, 2, 5, 32])
