@@ -101,6 +101,7 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
         clamp: wp.array(dtype=wp.int32),
         structure_clock: wp.array(dtype=wp.float64),
         prescriptions: wp.array2d(dtype=pose_type),
+        lead: wp.array(dtype=point),
         seen_velocity: wp.array(dtype=point),
         position: wp.array(dtype=point),
         velocity_volume: wp.array(dtype=record),
@@ -109,7 +110,8 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
         normal: wp.array(dtype=vector),
         way: wp.array(dtype=vector),
     ):
-        """One face: put it where its owner will be `ahead` steps from now, with the velocity that the fluid sees.
+        """One face: put it where its owner will be `ahead` steps from now, at the velocity `lead`, with that which the
+        fluid sees.
 
         The acceleration that the fluid sees stays zero. With that of the owner the pressure of an extrapolated wall
         would push back what is accelerated, a step late: unstable for light and for stiff structures.
@@ -118,15 +120,14 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
         b = first_face + i
         k = face[i]
         s = owner[k]
-        v = seen_velocity[s]
-        x = reference[s] + displacement[s] + ahead * clock[wp.static(STEP)] * v
+        x = reference[s] + displacement[s] + ahead * clock[wp.static(STEP)] * lead[s]
         for axis in range(wp.static(dim)):
             if wp.static(options.periodic[axis]):
                 x[axis] = x[axis] - period[axis] * wp.floor((x[axis] - low[axis]) / period[axis])
         x_run = narrow(x, origin)
         zero = point()
         position[b] = x
-        velocity_volume[b] = pack(narrow(v, zero), wall_volume)
+        velocity_volume[b] = pack(narrow(seen_velocity[s], zero), wall_volume)
         position_pressure[b] = pack(x_run, position_pressure[b][dim])
         position_density[b] = pack(x_run, position_density[b][dim])
         if wp.static(options.has_barrier):
@@ -162,13 +163,14 @@ def make_face_kernels(options: FluidOptions, moving_clamps: bool) -> FaceKernels
     @wp.kernel(module=module, enable_backward=False)
     def find_mean_velocity(
         offset: int,
-        clock: wp.array(dtype=wp.float64),
-        displacement_before: wp.array(dtype=point),
-        displacement: wp.array(dtype=point),
-        seen_velocity: wp.array(dtype=point),
+        duration: wp.array(dtype=wp.float64),
+        which: int,
+        early: wp.array(dtype=point),
+        late: wp.array(dtype=point),
+        velocity: wp.array(dtype=point),
     ):
-        """One structure particle: the mean of its velocity over its steps in one of the fluid."""
+        """One structure particle: the mean of its velocity from two displacements, `duration[which]` [s] apart."""
         s = offset + wp.tid()
-        seen_velocity[s] = (displacement[s] - displacement_before[s]) / clock[wp.static(STEP)]
+        velocity[s] = (late[s] - early[s]) / duration[which]
 
     return FaceKernels(turn_sides, find_places, place, push, find_mean_velocity)

@@ -9,12 +9,12 @@ import warp as wp
 from warpsph_kernels.faces import make_face_kernels
 
 from warpsph.particles.launch import Pass
-from warpsph.particles.state import host_view
+from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, WallRange
 from warpsph.physics.structure import StructureModel
 from warpsph.sampling.faces import Faces
 
-SeenVelocity = Literal["end", "mean"]
+SeenVelocity = Literal["centred", "end", "mean"]
 HALF_STEP, NOW = 0.5, 0.0
 """How many steps ahead of the structures faces are placed."""
 
@@ -25,7 +25,8 @@ class FaceModel:
     Args:
         faces: of all structures together; their owners are particles of `structures`.
         mass: of each structure particle (n,) [kg].
-        seen: velocity of structures that the fluid sees: that at the end of their steps, or their mean over them.
+        seen: velocity of structures that the fluid sees at the end of its step: their mean from the middle of this step
+            to that of the next, that of the moment, or their mean over this step.
         side, way: vectors of each face, in the order of the faces, that this model keeps up to date: the side on which
             it is listed, and the way to its mirror point [m] (of a single entry where the wall method has none).
         force: of the fluid on each face [N], in the order of the faces.
@@ -61,7 +62,10 @@ class FaceModel:
         self._mass = array(mass, arithmetic.real)
         self._seen = seen
         self.seen_velocity = wp.clone(structures.state.velocity)
-        self._displacement_before = wp.clone(structures.state.displacement)
+        self._lead = wp.clone(structures.state.velocity)
+        self._early = wp.clone(structures.state.displacement)
+        self._late = wp.clone(structures.state.displacement)
+        self._duration = wp.zeros(2, dtype=wp.float64, device=device)
         self._bind(force)
 
     @property
@@ -74,6 +78,8 @@ class FaceModel:
         """Arrays of shape (structure particles,) that belong into a checkpoint."""
         return {
             "seen_velocity": self.seen_velocity,
+            "lead_velocity": self._lead,
+            "early_displacement": self._early,
             "fluid_force": self._structures.scratch.fluid_force,
         }
 
@@ -93,17 +99,37 @@ class FaceModel:
         """Hand the forces on the faces to the structures, for all of their coming steps."""
         self._push.run(self._structures.count)
 
+    @property
+    def looks_ahead(self) -> bool:
+        """Whether what the fluid sees takes to know where structures will be."""
+        return self._seen == "centred"
+
     def keep_places(self) -> None:
         """Remember where the structures are before they go on."""
         if self._seen == "mean":
-            wp.copy(self._displacement_before, self._structures.state.displacement)
+            wp.copy(self._early, self._structures.state.displacement)
 
-    def note_velocity(self) -> None:
-        """Let the fluid see how the structures move, or have moved since `keep_places`."""
-        if self._seen == "mean":
-            self._find_mean_velocity.run(self._structures.count)
-        else:
+    def show_motion(self, dt: float) -> None:
+        """Let the fluid see how the structures move, or have moved in their step of `dt` [s] since `keep_places`."""
+        if self._seen == "end":
             wp.copy(self.seen_velocity, self._structures.state.velocity)
+        else:
+            write_array(self._duration, np.array([dt, dt]))
+            self._find_mean.run(self._structures.count)
+        wp.copy(self._lead, self.seen_velocity)
+
+    def show_motion_to(self, ahead: np.ndarray, lead: float, window: float) -> None:
+        """Let the fluid see the mean motion around this moment.
+
+        Args:
+            ahead: displacements (n, dim) [m] after another `lead` [s].
+            window: how long before that the structures were where the last call put them ahead [s].
+        """
+        write_array(self._late, ahead)
+        write_array(self._duration, np.array([window, lead]))
+        self._find_centred.run(self._structures.count)
+        self._find_lead.run(self._structures.count)
+        wp.copy(self._early, self._late)
 
     def first_faces(self, values: np.ndarray) -> np.ndarray:
         """Of values on the faces in their present order (faces, ...), those of each structure particle's first face."""
@@ -143,6 +169,7 @@ class FaceModel:
                 s.reference.position,
                 s.state.displacement,
                 *shape,
+                self._lead,
                 self.seen_velocity,
                 state.position,
                 state.velocity_volume,
@@ -163,14 +190,16 @@ class FaceModel:
             s.scratch.fluid_force,
             s.state.acceleration,
         )
-        self._find_mean_velocity = bind(
-            "mean velocity",
-            kernels.find_mean_velocity,
-            a.clock,
-            self._displacement_before,
-            s.state.displacement,
-            self.seen_velocity,
-        )
+        now, seen = s.state.displacement, self.seen_velocity
+
+        def bind_mean(which: int, early: wp.array, late: wp.array, velocity: wp.array) -> Pass:
+            return bind(
+                "mean velocity", kernels.find_mean_velocity, self._duration, which, early, late, velocity
+            )
+
+        self._find_mean = bind_mean(0, self._early, now, seen)
+        self._find_centred = bind_mean(0, self._early, self._late, seen)
+        self._find_lead = bind_mean(1, now, self._late, self._lead)
 
 
 def _faces_by_owner(owner: np.ndarray, count: int) -> np.ndarray:

@@ -197,9 +197,10 @@ class Coupling(SceneModel):
     structures make as many steps within that as they need. A number: at most so many, the step of the fluid is
     shortened to what they allow; 1 is one shared step. Default: auto."""
 
-    velocity: Literal["end", "mean"] = "end"
-    """Velocity of structures that the fluid sees: at the end of their steps, or the mean over the steps that they make
-    within one of the fluid, after Zhang, Rezavand & Hu (2021), which is half a step of the fluid old. Default: end."""
+    velocity: Literal["centred", "end", "mean"] = "centred"
+    """Velocity of structures that the fluid sees at the end of its step. centred: the mean from the middle of this step
+    to the middle of the next, for which structures look half a step ahead; end: that of the moment; mean: over the step
+    that has been made, after Zhang, Rezavand & Hu (2021), which is half a step old. Default: centred."""
 
 
 class Contact(SceneModel):

@@ -21,7 +21,6 @@ class ContactStepper:
         self._parts = parts
         self._model = parts.model
         self._moved = 0.0
-        self._kept = self._model.memory()
 
     def raised(self, square: float) -> float:
         """The largest squared frequency of structures [1/s^2] with the springs of contact at their surfaces.
@@ -63,13 +62,13 @@ class ContactStepper:
             self._moved += way
         return complete
 
-    def keep(self) -> None:
-        """Remember what `return_to_kept` brings back."""
-        self._kept = self._model.memory()
+    def memory(self) -> Mapping[str, np.ndarray]:
+        """What friction remembers."""
+        return self._model.memory()
 
-    def return_to_kept(self) -> None:
-        """Take back what friction has done since."""
-        self._model.remember(self._kept)
+    def remember(self, memory: Mapping[str, np.ndarray]) -> None:
+        """Take back what friction has done since `memory`. The lists reach as far back as forward."""
+        self._model.remember(memory)
 
     def save(self) -> dict[str, Any]:
         """What brings the same lists and slips back."""

@@ -2,9 +2,13 @@
 
 The fluid makes one step of its own size; structures make as many within it as they need. The force between them is
 found once, in the middle of the step, where the fluid finds its own, and both sides receive it over the whole step:
-momentum is conserved to rounding. Densities follow at the end of the step from the velocities there, those of
-structures included: with their mean over the step (Zhang, Rezavand & Hu 2021) the fluid would see them half a step
-late, and a stiff structure would draw energy from that.
+momentum is conserved to rounding.
+
+Densities follow at the end of the step from the velocities there. Of structures the fluid sees the mean velocity
+(Zhang, Rezavand & Hu 2021), over a step that is centred there: from the middle of this step to that of the next, half a
+step ahead, which the structures make under the present force and take back. A mean over the step that has been made
+would be half a step old, and the velocity of the moment is that of vibrations much faster than the step: both feed
+energy to a structure.
 """
 
 from __future__ import annotations
@@ -32,7 +36,12 @@ class CoupledStepper:
         self._walls, self._faces = parts.model, parts.faces
         self._most_sub_steps = math.inf if sub_steps == "auto" else sub_steps
         self.target = math.inf
-        self.sub_steps = 0
+        self.lead = 0.0
+
+    @property
+    def sub_steps(self) -> int:
+        """Steps that the structures have made so far, those ahead included."""
+        return self._structure.steps_made
 
     def step(self) -> StepReport:
         """Advance by one step of the fluid."""
@@ -43,7 +52,7 @@ class CoupledStepper:
         self._fluid.find_forces()
         self.push_structures()
         self._fluid.advance()
-        self.advance_structures()
+        self.advance_structures(report.dt)
         self._fluid.move_walls(self._fluid.time)
         self._faces.place(NOW)
         self._fluid.find_densities()
@@ -79,10 +88,14 @@ class CoupledStepper:
         self._walls.react()
         self._faces.push()
 
-    def advance_structures(self) -> None:
-        """Let the structures catch up with the fluid, and show it how they move."""
+    def advance_structures(self, dt: float) -> None:
+        """Let the structures catch up with the fluid after a step [s], and show it how they move."""
+        now, lead = self._fluid.time, 0.5 * dt
         self._faces.keep_places()
-        self._structure.target = self._fluid.time
-        while self._structure.time < self._fluid.time and not self._structure.failed:
-            self.sub_steps += self._structure.step().count
-        self._faces.note_velocity()
+        self._structure.advance(now)
+        if self._faces.looks_ahead:
+            ahead = self._structure.look_ahead(now + lead)
+            self._faces.show_motion_to(ahead, lead, window=dt - self.lead + lead)
+            self.lead = lead
+        else:
+            self._faces.show_motion(dt)

@@ -142,13 +142,13 @@ class CoupledSystem:
         }
 
     def save(self) -> dict[str, Any]:
-        own = {"sub_steps": self.stepper.sub_steps}
+        own = {"lead": self.stepper.lead}
         return self.fluid.save() | _prefixed(self.structure.save()) | own
 
     def load(self, saved: Mapping[str, Any]) -> None:
         self.structure.load(_own(saved))
         self.fluid.load(saved)
-        self.stepper.sub_steps = int(saved["sub_steps"])
+        self.stepper.lead = float(saved["lead"])
 
 
 def _prefixed(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -50,15 +50,15 @@ class RelaxationStepper(StructureStepper):
         Raises:
             NotConverged: if one equilibrium takes more steps than allowed.
         """
-        self.keep_state()
-        before = self._before
+        kept = self.keep_state()
+        before = kept.arrays
         at = self.target if math.isfinite(self.target) else self.time
         ramp = min((self._made + SUB_STEPS) / RAMP_STEPS, 1.0) if self._model.has_time_laws else 1.0
         dt = self.stable_step
         self._laws.write(self.time + ramp * (at - self.time), 0.0)
         count = self._relax(SUB_STEPS, dt)
         if self.failed or self.is_unstable(dt):
-            self.return_to_kept()
+            self.return_to(kept)
             self.find_forces_again()
             count = self._relax_with_care()
         self._made += count

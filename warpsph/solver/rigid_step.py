@@ -7,7 +7,7 @@ that a step of rigid bodies is one look of the host at a few numbers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import fields
 from typing import Any
 
@@ -44,7 +44,6 @@ class RigidStepper:
         self._forces: list[RigidForces] = []
         self._power = np.zeros(len(self._bodies))
         self._time, self._dt = 0.0, 0.0
-        self._kept = list(self._states)
 
     @property
     def count(self) -> int:
@@ -98,13 +97,15 @@ class RigidStepper:
         together = zip(self._bodies, self._states, self._forces, strict=True)
         return {body.name: self._motion(body, state, forces) for body, state, forces in together}
 
-    def keep(self) -> None:
-        """Remember what `return_to_kept` brings back."""
-        self._kept = list(self._states)
+    @property
+    def states(self) -> tuple[RigidState, ...]:
+        """How the bodies move, to return to."""
+        return tuple(self._states)
 
-    def return_to_kept(self) -> None:
-        """Go back to the bodies at the last `keep`."""
-        self._states = list(self._kept)
+    def return_to(self, states: Sequence[RigidState], time: float) -> None:
+        """Go back to bodies of a time [s]; the state of their particles has been restored."""
+        self._states = list(states)
+        self.find_forces(time)
 
     def save(self) -> dict[str, Any]:
         """The rigid bodies' part of a checkpoint: each quantity of all bodies in one array."""

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -19,6 +20,7 @@ from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import SUB_STEPS, arrays_in
 from warpsph.scene.schema import Scene
 from warpsph.solver.contact_step import ContactStepper
+from warpsph.solver.rigid_motion import RigidState
 from warpsph.solver.rigid_step import RigidStepper
 from warpsph.solver.stability import largest_frequency
 from warpsph.solver.structure_assembly import StructureParts
@@ -33,6 +35,17 @@ SHORTEST = 1000.0
 """By how much a step may be shortened where the state has changed faster than was foreseen."""
 TURN = 0.1
 """Angle [rad] by which a rigid body may turn in a step, or its phase where forces could make it swing."""
+
+
+@dataclass(frozen=True)
+class Kept:
+    """A state to which a stepper can return: arrays, and what contact, rigid bodies and the stepper remember."""
+
+    arrays: Mapping[str, np.ndarray]
+    contact: Mapping[str, np.ndarray]
+    rigid: tuple[RigidState, ...]
+    time: float
+    extremes: np.ndarray
 
 
 class StructureStepper:
@@ -50,7 +63,7 @@ class StructureStepper:
         self.time = 0.0
         self.target = math.inf
         self.stuck = False
-        self._before: dict[str, np.ndarray] = {}
+        self.steps_made = 0
         alone = self._contact is None and self._rigid is None
         self._is_small = alone and parts.model.count <= SMALL and parts.model.launcher.device.is_cpu
         self._replay: Replay | None = None
@@ -85,7 +98,7 @@ class StructureStepper:
 
     def step(self) -> StepReport:
         """Make a few steps of one size; if they were too long after all, shorter ones to the same time."""
-        self.keep_state()
+        kept = self.keep_state()
         dt, planned, limit = self.choose_step()
         self.begin(dt)
         count = self.allowed(dt, planned)
@@ -95,7 +108,7 @@ class StructureStepper:
         before = self.extremes["speed"]
         self.survey()
         if self.failed or self.is_unstable(dt) or not self.listed(before, dt, count):
-            self.return_to_kept()
+            self.return_to(kept)
             count = self.step_with_care(end, dt / SHORTEST)
         else:
             self.time = end
@@ -244,22 +257,42 @@ class StructureStepper:
         """The particle with the least J."""
         return int(self._extremes[WORST])
 
-    def keep_state(self) -> None:
-        """Remember the present state, to return to it if the coming steps fail."""
-        self._before = {name: np.array(host_view(a)) for name, a in arrays_in(self._model.state).items()}
-        if self._contact:
-            self._contact.keep()
-        if self._rigid:
-            self._rigid.keep()
+    def keep_state(self) -> Kept:
+        """The present state, to which one may return."""
+        return Kept(
+            arrays={name: np.array(host_view(a)) for name, a in arrays_in(self._model.state).items()},
+            contact=self._contact.memory() if self._contact else {},
+            rigid=self._rigid.states if self._rigid else (),
+            time=self.time,
+            extremes=self._extremes.copy(),
+        )
 
-    def return_to_kept(self) -> None:
-        """Go back to the state before the last steps."""
+    def return_to(self, kept: Kept) -> None:
+        """Go back to a state, and bring stresses and time laws to it."""
         for name, array in arrays_in(self._model.state).items():
-            write_array(array, self._before[name])
+            write_array(array, kept.arrays[name])
+        self.time, self.stuck, self._extremes = kept.time, False, kept.extremes.copy()
+        self._set_clock(0.0)
+        self._laws.write(self.time, 0.0)
+        self._model.strain()
         if self._contact:
-            self._contact.return_to_kept()
+            self._contact.remember(kept.contact)
         if self._rigid:
-            self._rigid.return_to_kept()
+            self._rigid.return_to(kept.rigid, self.time)
+
+    def look_ahead(self, time: float) -> np.ndarray:
+        """Displacements [m] at a later time [s], if all that acts on the structures goes on; the state stays."""
+        kept = self.keep_state()
+        self.advance(time)
+        ahead = np.array(host_view(self._model.state.displacement))
+        self.return_to(kept)
+        return ahead
+
+    def advance(self, time: float) -> None:
+        """Make the steps to a time [s], or fewer if the state fails."""
+        self.target = time
+        while self.time < time and not self.failed:
+            self.steps_made += self.step().count
 
     def _set_clock(self, dt: float, damping: float = 0.0) -> None:
         values = np.zeros(3)
