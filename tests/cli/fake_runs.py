@@ -81,7 +81,7 @@ def summary(*rows: dict[str, Any]) -> dict[str, Any]:
         "simulated_s": 0.02,
         "wall_s": 75.0,
         "particle_steps_per_second": 2.5e6,
-        "steps": {"count": 100, "mean_s": 2e-4, "limited_by": {"acoustic": 97, "frame": 3}},
+        "steps": {"count": 100, "sub_steps": 0, "mean_s": 2e-4, "limited_by": {"acoustic": 97, "frame": 3}},
         "warnings": ["the scene [of a test] is tiny"],
         "references": list(rows or (REFERENCE_ROW,)),
     }

@@ -48,4 +48,5 @@ def _removed(count: int) -> str:
 def _steps(steps: Mapping[str, Any]) -> str:
     ruling = sorted(steps["limited_by"].items(), key=lambda item: -item[1])
     shares = ", ".join(f"{limit} {number / steps['count']:.0%}" for limit, number in ruling)
-    return f"{steps['count']}, dt = {steps['mean_s']:.3g} s on average; limited by {shares}"
+    within = f" and {steps['sub_steps']} of structures within" if steps["sub_steps"] else ""
+    return f"{steps['count']}{within}, dt = {steps['mean_s']:.3g} s on average; limited by {shares}"

@@ -14,6 +14,7 @@ energy to a structure.
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 from warpsph.physics.faces import HALF_STEP, NOW
 from warpsph.scene.schema import Scene
@@ -38,14 +39,9 @@ class CoupledStepper:
         self.target = math.inf
         self.lead = 0.0
 
-    @property
-    def sub_steps(self) -> int:
-        """Steps that the structures have made so far, those ahead included."""
-        return self._structure.steps_made
-
     def step(self) -> StepReport:
         """Advance by one step of the fluid."""
-        report = self.choose_step()
+        report, made_before = self.choose_step(), self._structure.steps_made
         self._fluid.keep_lists(report.dt)
         self._fluid.move_walls(self._fluid.time - 0.5 * report.dt)
         self._faces.place(HALF_STEP)
@@ -56,7 +52,7 @@ class CoupledStepper:
         self._fluid.move_walls(self._fluid.time)
         self._faces.place(NOW)
         self._fluid.find_densities()
-        return report
+        return replace(report, sub_steps=self._structure.steps_made - made_before)
 
     def choose_step(self) -> StepReport:
         """As long as the fluid allows, and as the structures do where their steps are counted.

@@ -18,6 +18,7 @@ class StepStatistics:
     def __init__(self, sim: Simulation) -> None:
         self.count = 0
         self.particle_steps = 0
+        self.sub_steps = 0
         self._shortest, self._longest, self._sum = float("inf"), 0.0, 0.0
         self._ruling: dict[str, int] = {}
         self.largest: dict[str, float] = {}
@@ -38,6 +39,7 @@ class StepStatistics:
         """Count the step that the simulation has just made."""
         step = sim.last_step
         self.count += step.count
+        self.sub_steps += step.sub_steps
         self.particle_steps += step.count * sim.particle_count
         self._sum += step.count * step.dt
         self._ruling[step.limit] = self._ruling.get(step.limit, 0) + step.count
@@ -55,6 +57,7 @@ class StepStatistics:
     def load(self, saved: dict[str, Any], sim: Simulation) -> None:
         """Take over what `save` returned; what the simulation has done so far is no part of the run."""
         self.count, self.particle_steps = saved["count"], saved["particle_steps"]
+        self.sub_steps = saved["sub_steps"]
         self._shortest, self._longest, self._sum = saved["shortest"], saved["longest"], saved["sum"]
         self._ruling = dict(saved["ruling"])
         self.largest = dict(saved["largest"])
@@ -66,6 +69,7 @@ class StepStatistics:
         """Return the statistics for the summary; steps shortened to land on a time do not count as shortest."""
         return {
             "count": self.count,
+            "sub_steps": self.sub_steps,
             "shortest_s": self._shortest if self.count else None,
             "mean_s": self._sum / self.count if self.count else None,
             "longest_s": self._longest,

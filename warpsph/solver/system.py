@@ -15,11 +15,15 @@ from warpsph.solver.ledger import Ledger
 
 @dataclass(frozen=True)
 class StepReport:
-    """What a step did: its size [s], the limit that ruled it, and how many steps of that size were made at once."""
+    """What a step did: its size [s], the limit that ruled it, and how many steps of that size were made at once.
+
+    `sub_steps` are the steps that structures made within a step of the fluid, those ahead of it included.
+    """
 
     dt: float
     limit: str
     count: int = 1
+    sub_steps: int = 0
 
 
 class System(Protocol):
