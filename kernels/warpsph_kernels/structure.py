@@ -21,6 +21,8 @@ Since F_a is the weighted least-squares fit of x_ab = F_a X_ab with the same wei
 part to first order, and both parts together give the force per reference volume
 
     sum_b w_ab [ (Q_a + Q_b) X_ab + 2 penalty u_ab ],    Q = P L - penalty H,    H = F - I.
+
+Between two materials that are bonded to each other, 2 penalty is the sum of both.
 """
 
 import hashlib
@@ -59,6 +61,8 @@ class StructureOptions:
     """Whether the neighbours of some particle lie in a plane or on a line."""
     scattered: bool = False
     """Whether particles do not lie on a lattice, so that every bond brings the gradients of its two ends."""
+    bonded: bool = False
+    """Whether structures of different materials are bonded to each other."""
 
     @property
     def module(self) -> str:
@@ -294,6 +298,7 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         neighbours: wp.array2d(dtype=wp.int32),
         bonds: wp.array2d(dtype=record),
         ends: wp.array2d(dtype=wp.int32),
+        penalty: wp.array(dtype=real),
         traction: wp.array(dtype=matrix),
         stress: wp.array(dtype=matrix),
         own_gradient: wp.array2d(dtype=vector),
@@ -326,12 +331,20 @@ def make_structure_kernels(options: StructureOptions) -> StructureKernels:
         Q_a = traction[i]
         total = vector()
         end = ends[i, 0]
-        for n in range(end):
-            total += pair_force(
-                bonds[i, n], Q_a, u_a, neighbours[i, n], real(2.0) * p.penalty, traction, displacement
-            )
-        for n in range(end, ends[i, 1]):
-            total += pair_force(bonds[i, n], Q_a, u_a, neighbours[i, n], p.penalty, traction, displacement)
+        if wp.static(options.bonded):
+            for n in range(ends[i, 1]):
+                b = neighbours[i, n]
+                both = penalty[i] + penalty[b]
+                total += pair_force(bonds[i, n], Q_a, u_a, b, both, traction, displacement)
+        else:
+            for n in range(end):
+                total += pair_force(
+                    bonds[i, n], Q_a, u_a, neighbours[i, n], real(2.0) * p.penalty, traction, displacement
+                )
+            for n in range(end, ends[i, 1]):
+                total += pair_force(
+                    bonds[i, n], Q_a, u_a, neighbours[i, n], p.penalty, traction, displacement
+                )
         if wp.static(options.scattered):
             P_a = stress[i]
             for n in range(ends[i, 1]):

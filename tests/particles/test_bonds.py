@@ -23,7 +23,8 @@ def cloud(dim: int, count: int = 60, jitter: float = 0.3) -> np.ndarray:
 def bonds_of(*bodies: np.ndarray, periods=None):
     total, dim = sum(map(len, bodies)), bodies[0].shape[1]
     return make_bonds(
-        bodies,
+        np.concatenate(bodies),
+        np.repeat(np.arange(len(bodies)), [len(body) for body in bodies]),
         np.full(total, SPACING**dim),
         np.zeros(total, dtype=bool),
         RADIUS,

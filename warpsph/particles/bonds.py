@@ -46,7 +46,8 @@ class Bonds:
 
 
 def make_bonds(
-    bodies: Sequence[np.ndarray],
+    position: np.ndarray,
+    body: np.ndarray,
     volume: np.ndarray,
     rigid: np.ndarray,
     radius: float,
@@ -56,15 +57,15 @@ def make_bonds(
     """Bonds within each body, none between bodies and none between rigid particles.
 
     Args:
-        bodies: positions (n_k, dim) of each body's particles [m].
+        position: of all particles (n, dim) [m].
+        body: number of the body of each particle (n,); several structures may be one body.
         volume: of all particles (n,) [m^dim].
         rigid: whether each particle's displacement is prescribed in all components, shape (n,). It has no strain of its
             own, so its correction is zero.
         radius: reach of a bond [m].
         periods: length of each periodic axis [m], zero along the others.
     """
-    position = np.concatenate(bodies)
-    first, second = pairs_within(bodies, rigid, radius, np.asarray(periods))
+    first, second = pairs_within(position, body, rigid, radius, np.asarray(periods))
     vector = nearest_image(position[first] - position[second], np.asarray(periods))
     weight = volume[second] * weights(np.linalg.norm(vector, axis=1))
     correction, normal, seen = _corrections(rigid, first, vector, weight)
@@ -84,21 +85,27 @@ def make_bonds(
 
 
 def pairs_within(
-    bodies: Sequence[np.ndarray], rigid: np.ndarray, radius: float, periods: np.ndarray
+    position: np.ndarray, body: np.ndarray, rigid: np.ndarray, radius: float, periods: np.ndarray
 ) -> tuple[np.ndarray, np.ndarray]:
-    """Both directions of every pair within the radius, sorted by the first particle; bonds with rigid ones last."""
-    found, start = [np.empty((0, 2), dtype=np.int64)], 0
-    for position in bodies:
-        box = np.where(periods > 0.0, periods, 0.0)
-        inside = np.where(periods > 0.0, np.mod(position, np.where(periods > 0.0, periods, 1.0)), position)
-        tree = cKDTree(inside, boxsize=box if box.any() else None)
-        found.append(tree.query_pairs(radius, output_type="ndarray") + start)
-        start += len(position)
+    """Both directions of every pair of a body within the radius, sorted by the first particle; bonds with rigid ones
+    last."""
+    found = [np.empty((0, 2), dtype=np.int64)]
+    for number in np.unique(body):
+        members = np.flatnonzero(body == number)
+        tree = periodic_tree(position[members], periods)
+        found.append(members[tree.query_pairs(radius, output_type="ndarray")])
     pairs = np.concatenate(found)
     both = np.concatenate([pairs, pairs[:, ::-1]])
     both = both[~rigid[both].all(axis=1)]
     both = both[np.lexsort((both[:, 1], rigid[both].any(axis=1), both[:, 0]))]
     return both[:, 0], both[:, 1]
+
+
+def periodic_tree(position: np.ndarray, periods: np.ndarray) -> cKDTree:
+    """Search tree over positions (n, dim) [m] in a space of these periods (dim,) [m], zero where there is none."""
+    box = np.where(periods > 0.0, periods, 0.0)
+    inside = np.where(periods > 0.0, np.mod(position, np.where(periods > 0.0, periods, 1.0)), position)
+    return cKDTree(inside, boxsize=box if box.any() else None)
 
 
 def nearest_image(vector: np.ndarray, periods: np.ndarray) -> np.ndarray:

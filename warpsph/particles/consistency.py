@@ -60,7 +60,8 @@ def is_scattered(bonds: Bonds, body: slice, radius: float, spacing: float) -> bo
 
 
 def consistent_gradients(
-    bodies: Sequence[np.ndarray],
+    position: np.ndarray,
+    body: np.ndarray,
     volume: np.ndarray,
     rigid: np.ndarray,
     bonds: Bonds,
@@ -70,7 +71,8 @@ def consistent_gradients(
     """Gradients of the bonds for which a uniform stress exerts no force on particles inside.
 
     Args:
-        bodies: positions (n_k, dim) of each body's particles at rest [m].
+        position: of all particles at rest (n, dim) [m].
+        body: number of the body of each particle (n,).
         volume: of all particles (n,) [m^dim].
         rigid: whether each particle has no strain of its own, shape (n,).
         periods: length of each periodic axis [m], zero along the others.
@@ -86,7 +88,7 @@ def consistent_gradients(
     np.add.at(open_faces, first, area - area[twin])
     misfit = _misfit(first, second, vector, fitted, particles)
     strength = volume[first] * np.abs(weight) * ~rigid[first]
-    inside = ~rigid & ~sees_out(bodies, spacing, periods)
+    inside = ~rigid & ~sees_out(position, body, spacing, periods)
     field = _solve(misfit, strength, open_faces, inside)
     area += strength[:, None] * (misfit @ field)
     own = np.zeros_like(bonds.vector)
@@ -121,11 +123,11 @@ def _misfit(
     return csr_array(difference - fit)
 
 
-def sees_out(bodies: Sequence[np.ndarray], spacing: float, periods: Sequence[float]) -> np.ndarray:
+def sees_out(position: np.ndarray, body: np.ndarray, spacing: float, periods: Sequence[float]) -> np.ndarray:
     """Whether a particle has a cone without neighbours of its body before it, as at a surface, shape (n,)."""
-    position, lengths = np.concatenate(bodies), np.asarray(periods)
+    lengths = np.asarray(periods)
     none_rigid = np.zeros(len(position), dtype=bool)
-    first, second = pairs_within(bodies, none_rigid, SURFACE_REACH * spacing, lengths)
+    first, second = pairs_within(position, body, none_rigid, SURFACE_REACH * spacing, lengths)
     vector = nearest_image(position[second] - position[first], lengths)
     vector /= np.linalg.norm(vector, axis=1, keepdims=True)
     narrowest = np.ones(len(position))

@@ -56,7 +56,7 @@ class ContactSurface:
     """The contact particles (m), those of structures before those of walls.
 
     owner: (m,) particle of the structures, of a wall the column of its motion among the prescriptions or -1;
-    body: (m,) index of the structure, -1 for a wall; rest: (m, dim) where they are at rest [m];
+    body: (m,) number of the body, -1 for a wall; rest: (m, dim) where they are at rest [m];
     bodies: how many belong to structures.
     """
 

@@ -36,6 +36,7 @@ UNITS = {
     "neighbours": "1",
     "bonds": "m, m^-2",
     "ends": "1",
+    "penalty": "Pa",
     "correction": "1",
     "thin_normal": "1",
     "own_gradient": "1/m",
@@ -82,7 +83,8 @@ class StructureReference:
 
     position: (n,) at rest [m]; volume: (n,) [m^dim]; structure: (n,) index into `materials`; neighbours: (n, m);
     bonds: (n, m) records (X_ab [m], w_ab [m^-2]); ends: (n, 2) of the bonds without and with rigid
-    particles; correction: (n,) L_a [1]; thin_normal: (n,) records
+    particles; penalty: (n,) of each particle, zero of rigid ones, in scenes that bond structures [Pa];
+    correction: (n,) L_a [1]; thin_normal: (n,) records
     (normal of coplanar neighbours, 1 or 0 where even a plane is not seen); free: (n,) vectors, 1 where a component of
     the displacement is free and 0 where a clamp prescribes it; clamp: (n,) index of the moving clamp or -1;
     load: (loads, n) force per mass of each load before its time law [m/s^2]; own_gradient, other_gradient: (n, m) of
@@ -96,6 +98,7 @@ class StructureReference:
     neighbours: wp.array
     bonds: wp.array
     ends: wp.array
+    penalty: wp.array
     correction: wp.array
     thin_normal: wp.array
     free: wp.array
@@ -269,6 +272,7 @@ class StructureModel:
             r.neighbours,
             r.bonds,
             r.ends,
+            r.penalty,
             t.traction,
             t.stress,
             r.own_gradient,

@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 from scipy.spatial import cKDTree
 
-from warpsph.sampling.distance import DistanceFunction, signed_distance, steepest_direction
+from warpsph.sampling.distance import signed_distance, steepest_direction
 from warpsph.scene.shapes import Shape
 
 OCCUPIED = 0.85
@@ -34,20 +34,20 @@ class Faces:
     thickness: np.ndarray
 
 
-def faces_of(position: np.ndarray, shape: Shape, spacing: float, reach: float) -> Faces:
+def faces_of(position: np.ndarray, shape: Shape | None, spacing: float, reach: float) -> Faces:
     """Faces of a body at rest with particles at `position` (n, dim) [m], in fluid that reaches over `reach` [m].
 
     A particle has two faces if surfaces that look away from each other lie on both sides of it, both less than the
     reach from it; they are found from the normals of the surface particles around it, whose direction is the first
-    principal axis of sum n (x) n. The first face looks to the nearer surface.
+    principal axis of sum n (x) n. The first face looks to the nearer surface. The mirror points of a body of several
+    shapes (None) lie before its surface particles.
     """
     normal = surface_normals(position, spacing, reach)
     axis, ahead, behind = _thin_axis(position, normal, spacing, reach)
     thin = np.flatnonzero(np.isfinite(ahead + behind))
     turn = np.where(ahead[thin] <= behind[thin], 1.0, -1.0)[:, None] * axis[thin]
     near, far = np.minimum(ahead, behind)[thin], np.maximum(ahead, behind)[thin]
-    distance = partial(signed_distance, shape)
-    way = -2.0 * distance(position)[:, None] * _outward(distance, position, spacing)
+    way = _way_over_particles(position, normal, spacing) if shape is None else _way(position, shape, spacing)
     first_side = np.zeros_like(position)
     first_side[thin], way[thin] = turn, 2.0 * near[:, None] * turn
     thickness = ahead + behind
@@ -107,8 +107,18 @@ def _on_side(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
     return np.where((np.einsum("ni,ni->n", normal, side) >= -1e-6)[:, None], normal, 0.0)
 
 
-def _outward(distance: DistanceFunction, position: np.ndarray, spacing: float) -> np.ndarray:
-    return steepest_direction(distance, position, _DIFFERENCE * spacing)
+def _way(position: np.ndarray, shape: Shape, spacing: float) -> np.ndarray:
+    """Ways (n, dim) [m] to the mirror points before the surface of a shape."""
+    distance = partial(signed_distance, shape)
+    return -2.0 * distance(position)[:, None] * steepest_direction(distance, position, _DIFFERENCE * spacing)
+
+
+def _way_over_particles(position: np.ndarray, normal: np.ndarray, spacing: float) -> np.ndarray:
+    """The same before the plane half a spacing ahead of the nearest surface particle, across its normal."""
+    surface = np.flatnonzero(normal.any(axis=1))
+    nearest = surface[cKDTree(position[surface]).query(position)[1]]
+    depth = np.einsum("ni,ni->n", position[nearest] - position, normal[nearest]) + 0.5 * spacing
+    return 2.0 * depth[:, None] * normal[nearest]
 
 
 def _summed(index: np.ndarray, values: np.ndarray, count: int) -> np.ndarray:

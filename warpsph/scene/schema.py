@@ -230,6 +230,10 @@ class Scene(SceneModel):
     structures: Annotated[Mapping[Name, Structure], _NAMED] = {}
     """Flexible structures by name. Default: none."""
 
+    bonds: tuple[Annotated[tuple[Name, ...], Field(min_length=2)], ...] = ()
+    """Groups of structures, each a list of names, that hold together where they touch, as one body of several
+    materials. Structures that do not stand in the same group are separate, however near they are. Default: none."""
+
     contact: Contact | None = None
     """Contact of structures; null: they pass through each other and through walls. Default: null."""
 

@@ -52,7 +52,7 @@ class ContactParts:
 def assemble_contact(
     scene: Scene,
     sets: Sequence[SampledSet],
-    bodies: Sequence[SampledSet],
+    bodies: Sequence[tuple[SampledSet, int]],
     mass: np.ndarray,
     columns: Mapping[str, int],
     structures: StructureModel,
@@ -62,7 +62,8 @@ def assemble_contact(
     """Allocate what contact needs and bind its passes.
 
     Args:
-        bodies: structures in the order of their particles.
+        bodies: structures in the order of their particles, with the numbers of the bodies that they belong to:
+            bonded structures are one body.
         mass: of all particles of structures (n,) [kg].
         columns: column of each moving wall among the prescriptions.
         bond_radius: reach of the bonds of structures [m].
@@ -98,20 +99,22 @@ def _patches(scene: Scene, walls: Sequence[SampledSet]) -> list[WallPatch]:
 
 def _surface(
     scene: Scene,
-    bodies: Sequence[SampledSet],
+    bodies: Sequence[tuple[SampledSet, int]],
     walls: Sequence[WallPatch],
     sampled: Mapping[str, SampledSet],
     columns: Mapping[str, int],
 ) -> ContactSurface:
-    shown = np.concatenate([at_surface(body.position, scene.spacing) for body in bodies])
+    rest = np.concatenate([sampled.position for sampled, _ in bodies])
+    body = np.concatenate([np.full(len(sampled.position), number) for sampled, number in bodies])
+    shown = np.zeros(len(rest), dtype=bool)
+    for number in np.unique(body):
+        shown[body == number] = at_surface(rest[body == number], scene.spacing)
     owner = np.flatnonzero(shown)
-    structure = np.repeat(np.arange(len(bodies)), [len(body.position) for body in bodies])
-    rest = np.concatenate([body.position for body in bodies])
     count = sum(len(wall.particles) for wall in walls)
     column = [np.full(len(wall.particles), columns.get(wall.name, -1)) for wall in walls]
     return ContactSurface(
         owner=np.concatenate([owner, *column]),
-        body=np.concatenate([structure[owner], np.full(count, -1)]),
+        body=np.concatenate([body[owner], np.full(count, -1)]),
         rest=np.concatenate([rest[owner], *(sampled[w.name].position[w.particles] for w in walls)]),
         bodies=len(owner),
     )

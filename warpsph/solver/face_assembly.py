@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 
 import numpy as np
 import warp as wp
@@ -18,7 +18,7 @@ from warpsph.sampling import SampledSet
 from warpsph.sampling.faces import Faces, faces_of
 from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.schema import Scene
-from warpsph.solver.structure_assembly import StructureParts
+from warpsph.solver.structure_assembly import Body, StructureParts
 
 CLEAR = 1e-3
 """Part of a spacing by which a thin structure may be thinner than the fluid's reach over it."""
@@ -36,30 +36,37 @@ class SampledFaces(Faces):
 
 
 def sample_faces(scene: Scene, structures: StructureParts) -> SampledFaces:
-    """The faces of all structures. Raises SceneError if fluid would act through a structure."""
-    by_body = [
-        faces_of(
-            body.sampled.position, scene.structures[body.name].shape, scene.spacing, scene.support_radius
-        )
-        for body in structures.bodies
+    """The faces of all structures; those bonded to each other show them as one body.
+
+    Raises SceneError if fluid would act through a structure.
+    """
+    bodies = structures.bodies
+    by_composite = [
+        _faces_of_composite(scene, [body for body in bodies if body.composite == number])
+        for number in dict.fromkeys(body.composite for body in bodies)
     ]
-    problems = [*_thin_problems(scene, structures, by_body)]
+    joined = {
+        member.name: np.concatenate([getattr(faces, member.name) for faces in by_composite])
+        for member in fields(Faces)
+    }
+    problems = [*_thin_problems(scene, structures, joined["owner"], joined["thickness"])]
     if problems:
         raise SceneError(problems)
     names = [*scene.fluids, *scene.boundaries, *scene.structures]
-    counts = [len(faces.owner) for faces in by_body]
-    bodies = structures.bodies
-    joined = {
-        member.name: np.concatenate([getattr(faces, member.name) for faces in by_body])
-        for member in fields(Faces)
-    }
-    joined["owner"] = np.concatenate([b.first + f.owner for b, f in zip(bodies, by_body, strict=True)])
-    sticks = [float(scene.structures[body.name].slip == "no_slip") for body in bodies]
-    return SampledFaces(
-        **joined,
-        set_index=np.repeat([names.index(body.name) for body in bodies], counts),
-        no_slip=np.repeat(sticks, counts),
-    )
+    counts = [body.count for body in bodies]
+    set_index = np.repeat([names.index(body.name) for body in bodies], counts)
+    sticks = np.repeat([float(scene.structures[body.name].slip == "no_slip") for body in bodies], counts)
+    owner = joined["owner"]
+    return SampledFaces(**joined, set_index=set_index[owner], no_slip=sticks[owner])
+
+
+def _faces_of_composite(scene: Scene, members: Sequence[Body]) -> Faces:
+    """Faces of one structure or of several that are bonded, with owners among all particles of structures."""
+    position = np.concatenate([body.sampled.position for body in members])
+    shape = scene.structures[members[0].name].shape if len(members) == 1 else None
+    faces = faces_of(position, shape, scene.spacing, scene.support_radius)
+    particles = np.concatenate([np.arange(body.first, body.first + body.count) for body in members])
+    return replace(faces, owner=particles[faces.owner])
 
 
 @dataclass(frozen=True)
@@ -92,16 +99,19 @@ def make_faces(
     return FaceParts(model, FaceModel(assembly, place, *bodies, sides, way, model.force))
 
 
-def _thin_problems(scene: Scene, structures: StructureParts, by_body: Sequence[Faces]) -> Iterator[Problem]:
+def _thin_problems(
+    scene: Scene, structures: StructureParts, owner: np.ndarray, thickness: np.ndarray
+) -> Iterator[Problem]:
     """Structures so thin that fluid on one side would feel fluid on the other."""
     reach, dp = scene.support_radius, scene.spacing
-    for body, faces in zip(structures.bodies, by_body, strict=True):
-        thinnest = float(faces.thickness.min())
+    for body in structures.bodies:
+        own = (owner >= body.first) & (owner < body.first + body.count)
+        thinnest = float(thickness[own].min())
         flat = bool(structures.bonds.thin[body.range].any())
         if flat or thinnest + dp < reach - CLEAR * dp:
-            thickness = f"{thinnest:.3g} m thick" if np.isfinite(thinnest) else "a single layer of particles"
+            size = f"{thinnest:.3g} m thick" if np.isfinite(thinnest) else "a single layer of particles"
             message = (
-                f"it is {thickness} in places: fluid on one side would act through it on fluid on the other, "
+                f"it is {size} in places: fluid on one side would act through it on fluid on the other, "
                 f"whose particles see {reach:.3g} m far"
             )
             allowed = f"a thickness of at least {reach - dp:.3g} m, a smaller spacing or numerics.h_over_dp"

@@ -15,12 +15,13 @@ RELATIVE_STRETCH = 1e-3
 def largest_frequency(model: StructureModel) -> float:
     """Return the largest angular frequency [1/s] of the structures about their present state, by power iteration.
 
-    The force of a displacement e is -M omega^2 e in its eigenmode. From a mode at random, the product of mass and
-    omega^2 is applied again and again, and the Rayleigh quotient of the last mode is returned. It approaches the
+    The force of a displacement e is -M omega^2 e in its eigenmode. From a mode at random, M^-1 K is applied again and
+    again, and the Rayleigh quotient of the last mode, with the masses M as weights, is returned. It approaches the
     largest frequency from below, after so many iterations to a few per cent. The clock has to stand still.
     """
     kept = {name: np.array(host_view(array)) for name, array in arrays_in(model.state).items()}
     free = host_view(model.reference.free).astype(np.float64)
+    mass = _relative_mass(model)
     size = RELATIVE_STRETCH * _shortest_bond(model)
     rest = _acceleration(model, kept["displacement"])
     mode = np.random.default_rng(0).normal(size=free.shape) * free
@@ -31,11 +32,18 @@ def largest_frequency(model: StructureModel) -> float:
             break
         mode *= size / largest
         response = (rest - _acceleration(model, kept["displacement"] + mode)) * free
-        square = float(np.sum(response * mode) / np.sum(mode * mode))
+        square = float(np.sum(mass * response * mode) / np.sum(mass * mode * mode))
         mode = response
     for name, array in arrays_in(model.state).items():
         write_array(array, kept[name])
     return float(np.sqrt(max(square, 0.0))) or _free_flight(model)
+
+
+def _relative_mass(model: StructureModel) -> np.ndarray:
+    """Mass of each particle over the largest, shape (n, 1)."""
+    density = model.reference.materials.numpy()["density"][model.reference.structure.numpy()]
+    mass = density.astype(np.float64) * model.reference.volume.numpy()
+    return (mass / mass.max())[:, None]
 
 
 def _acceleration(model: StructureModel, displacement: np.ndarray) -> np.ndarray:

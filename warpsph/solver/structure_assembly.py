@@ -11,15 +11,13 @@ import numpy as np
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.materials import make_material_struct
-from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.structure import StructureOptions
 
-from warpsph.particles.bonds import Bonds, make_bonds
-from warpsph.particles.consistency import Gradients, consistent_gradients, is_scattered
+from warpsph.particles.bonds import Bonds
+from warpsph.particles.consistency import Gradients
 from warpsph.particles.launch import Launcher
 from warpsph.particles.rows import row_array
 from warpsph.particles.state import write_array
-from warpsph.particles.tabulation import tabulated
 from warpsph.physics.structure import (
     LawRange,
     StructureModel,
@@ -33,11 +31,17 @@ from warpsph.sampling.initial_state import initial_field
 from warpsph.sampling.kinematics import RigidMotion, rigid_motion, rigid_motions
 from warpsph.sampling.loads import inside, specific_load
 from warpsph.sampling.scene_lattices import lattices_of
-from warpsph.sampling.walls import period_of
 from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.schema import Scene
 from warpsph.scene.structures import Load
 from warpsph.scene.types import AXES
+from warpsph.solver.bond_assembly import (
+    bond_gradients,
+    bond_radius,
+    bonds_of,
+    composites_of,
+    unbonded_problems,
+)
 from warpsph.solver.contact_assembly import ContactParts, assemble_contact
 from warpsph.solver.rigid_assembly import RigidParts, assemble_rigid, density_of
 
@@ -47,12 +51,14 @@ class Body:
     """A structure of the scene and where its particles are: `first` .. `first + count - 1`.
 
     `position` (count, dim) [m] at rest is that of the sampled lattice, but for clamped particles at a surface.
+    Structures that are bonded to each other have the same number `composite`.
     """
 
     name: str
     sampled: SampledSet
     first: int
     position: np.ndarray
+    composite: int
 
     @property
     def count(self) -> int:
@@ -98,8 +104,14 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     volume = np.concatenate([np.full(body.count, body.sampled.volume) for body in bodies])
     clamps = tuple(_clamps(scene, bodies))
     rigid = _rigid(scene, bodies, clamps, len(volume))
-    bonds = _bonds(scene, bodies, volume, rigid)
-    gradients = _gradients(scene, bodies, volume, rigid, bonds)
+    rest = np.concatenate([body.position for body in bodies])
+    composite = np.concatenate([np.full(body.count, body.composite) for body in bodies])
+    problems = [*unbonded_problems(scene, {body.name: body.position for body in bodies})]
+    if problems:
+        raise SceneError(problems)
+    bonds = bonds_of(scene, rest, composite, volume, rigid)
+    ranges_of_bodies = [body.range for body in bodies]
+    gradients = bond_gradients(scene, rest, composite, ranges_of_bodies, volume, rigid, bonds)
     density = np.concatenate([np.full(b.count, density_of(scene, b.sampled)) for b in bodies])
     mass = density * volume
     loads = list(_loads(scene, bodies))
@@ -114,6 +126,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         moving_walls=bool(wall_motions),
         thin=bool(bonds.thin.any()),
         scattered=gradients is not None,
+        bonded=bool(scene.bonds),
     )
     ranges = _law_ranges(scene, bodies)
     blocks = sum(one.blocks for one in ranges)
@@ -126,7 +139,16 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
         ranges,
         scene.gravity,
         _reference(
-            scene, arithmetic, bodies, bonds, gradients, volume, clamps, [load for _, load in loads], device
+            scene,
+            arithmetic,
+            bodies,
+            bonds,
+            gradients,
+            volume,
+            rigid,
+            clamps,
+            [load for _, load in loads],
+            device,
         ),
         allocate_state(arithmetic, len(volume), device),
         allocate_scratch(options, len(volume), blocks, motions, device),
@@ -135,7 +157,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     contact = None
     if scene.contact is not None:
         columns = {name: moving + k for k, name in enumerate(wall_motions)}
-        ordered = [body.sampled for body in bodies]
+        ordered = [(body.sampled, body.composite) for body in bodies]
         contact = assemble_contact(scene, sets, ordered, mass, columns, model, bond_radius(scene), launcher)
     factors = tuple(spec.factor for spec, _ in loads)
     among = assemble_rigid(scene, [(body.first, body.sampled) for body in bodies], model, launcher)
@@ -147,12 +169,6 @@ def is_static(scene: Scene) -> bool:
     return scene.numerics.structure.solution.type == "static"
 
 
-def bond_radius(scene: Scene) -> float:
-    """Reach of the bonds of structures [m]."""
-    numerics = scene.numerics
-    return numerics.support_over_h * numerics.structure.h_over_dp * scene.spacing
-
-
 def _bodies(scene: Scene, sets: Sequence[SampledSet]) -> tuple[Body, ...]:
     """Structures with those of one law side by side, otherwise in the order of the scene."""
     bodies, first = [], 0
@@ -160,7 +176,8 @@ def _bodies(scene: Scene, sets: Sequence[SampledSet]) -> tuple[Body, ...]:
         (s for s in sets if s.kind == "structure"), key=lambda sampled: _code_of(scene, sampled.name)
     )
     for sampled in ordered:
-        bodies.append(Body(sampled.name, sampled, first, _rest_position(scene, sampled)))
+        composite = composites_of(scene)[sampled.name]
+        bodies.append(Body(sampled.name, sampled, first, _rest_position(scene, sampled), composite))
         first += len(sampled.position)
     return tuple(bodies)
 
@@ -189,37 +206,6 @@ def _law_ranges(scene: Scene, bodies: Sequence[Body]) -> list[LawRange]:
         members = list(group)
         ranges.append(LawRange(law, plane_stress, members[0].first, sum(body.count for body in members)))
     return ranges
-
-
-def _bonds(scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray) -> Bonds:
-    dim, smoothing = scene.dimension, SMOOTHING_KERNELS[scene.numerics.kernel]
-    h = scene.numerics.structure.h_over_dp * scene.spacing
-    _, slope = smoothing.make(Arithmetic(dim, "double"))
-
-    def weights(length: np.ndarray) -> np.ndarray:
-        return smoothing.norm(dim, h) / h**2 * tabulated(slope, length / h)
-
-    positions = [body.position for body in bodies]
-    return make_bonds(positions, volume, rigid, bond_radius(scene), _periods(scene), weights)
-
-
-def _gradients(
-    scene: Scene, bodies: Sequence[Body], volume: np.ndarray, rigid: np.ndarray, bonds: Bonds
-) -> Gradients | None:
-    """Gradients of the bonds where some body does not lie on a lattice, else None."""
-    radius, spacing = bond_radius(scene), scene.spacing
-    if not any(is_scattered(bonds, body.range, radius, spacing) for body in bodies):
-        return None
-    positions = [body.position for body in bodies]
-    return consistent_gradients(positions, volume, rigid, bonds, spacing, _periods(scene))
-
-
-def _periods(scene: Scene) -> list[float]:
-    """Length of each periodic axis [m], zero along the others."""
-    periods = [0.0] * scene.dimension
-    for axis, (low, high) in period_of(scene).items():
-        periods[axis] = high - low
-    return periods
 
 
 def _clamps(scene: Scene, bodies: Sequence[Body]) -> Iterator[HeldRegion]:
@@ -254,6 +240,7 @@ def _reference(
     bonds: Bonds,
     gradients: Gradients | None,
     volume: np.ndarray,
+    rigid: np.ndarray,
     clamps: Sequence[HeldRegion],
     loads: Sequence[tuple[Body, np.ndarray]],
     device: Any,
@@ -279,6 +266,7 @@ def _reference(
         neighbours=row_array(bonds.neighbour, wp.int32, device),
         bonds=row_array(bond_records, arithmetic.record, device),
         ends=wp.array(np.ascontiguousarray(bonds.ends), dtype=wp.int32, ndim=2, device=device),
+        penalty=array(_penalty(scene, bodies, rigid) if scene.bonds else np.zeros(1), arithmetic.real),
         correction=array(bonds.correction, arithmetic.matrix),
         thin_normal=array(np.column_stack([bonds.normal, bonds.seen]), arithmetic.record),
         free=array(free, arithmetic.vector),
@@ -298,6 +286,12 @@ def _material(scene: Scene, arithmetic: Arithmetic, sampled: SampledSet) -> Any:
     numbers.penalty = scene.numerics.structure.hourglass * material.youngs_modulus
     numbers.damping = structure.damping
     return numbers
+
+
+def _penalty(scene: Scene, bodies: Sequence[Body], rigid: np.ndarray) -> np.ndarray:
+    """Stiffness of each particle's penalty (n,) [Pa], which is zero of rigid ones."""
+    moduli = [scene.structures[body.name].material.youngs_modulus for body in bodies]
+    return scene.numerics.structure.hourglass * np.repeat(moduli, [body.count for body in bodies]) * ~rigid
 
 
 def _rigid(scene: Scene, bodies: Sequence[Body], clamps: Sequence[HeldRegion], count: int) -> np.ndarray:

@@ -158,7 +158,7 @@ class StructureSystem:
             "sets": [{"name": name, "kind": kind, "particles": count} for name, kind, count in self.sets],
             "particles": self.particle_count,
             "passes": self._passes(),
-            "pairs": ["structure - structure (bonds at rest)", *self._touching_pairs()],
+            "pairs": [*self._bonded_pairs(), *self._touching_pairs()],
             "fields": [{"name": name, "unit": units[name], "bytes": size} for name, size in sizes.items()],
             "list_bytes": sizes["neighbours"] + sizes["bonds"] + sizes.get("contact_rows", 0),
             "neighbours": float(self.parts.bonds.count.mean()),
@@ -183,6 +183,10 @@ class StructureSystem:
             *timed,
             "structure survey",
         ]
+
+    def _bonded_pairs(self) -> list[str]:
+        groups = [f"{' - '.join(group)} (bonded)" for group in self._scene.bonds]
+        return ["structure - structure (bonds at rest)", *groups]
 
     def _touching_pairs(self) -> list[str]:
         contact = self.parts.contact

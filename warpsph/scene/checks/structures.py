@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 from warpsph.laws.materials import MATERIAL_LAWS
+from warpsph.scene.checks.bonds import bond_problems
 from warpsph.scene.checks.common import (
     DeclaredNames,
     expression_problems,
@@ -50,6 +51,7 @@ def _company_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
     if not names.fluids and not names.structures:
         yield Problem.at("fluids", "the scene has neither fluids nor structures", "at least one of them")
     yield from _coupling_problems(scene, names)
+    yield from bond_problems(scene, names)
     if scene.contact is not None and not names.structures:
         yield Problem.at("contact", "there is no structure to be touched", "contact beside structures")
     if scene.contact is not None and (scene.domain.periodic or scene.domain.symmetry):
