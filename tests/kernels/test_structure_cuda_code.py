@@ -39,3 +39,21 @@ def test_contact_compiles_for_cuda(tmp_path, dimension, precision, friction):
     make_contact_kernels(options)
     wp.compile_aot_module(wp.get_module(options.module), arch=SM_80, module_dir=tmp_path, use_ptx=True)
     assert len(list(tmp_path.glob("*.ptx"))) == 1
+
+
+@pytest.mark.parametrize(("dimension", "precision"), [(2, "double"), (3, "single")])
+def test_bonded_structures_compile_for_cuda(tmp_path, dimension, precision):
+    options = StructureOptions(
+        arithmetic=Arithmetic(dimension, precision),
+        moving_clamps=False,
+        loads=0,
+        damped=False,
+        contact=False,
+        immersed=True,
+        moving_walls=False,
+        thin=False,
+        bonded=True,
+    )
+    make_structure_kernels(options)
+    wp.compile_aot_module(wp.get_module(options.module), arch=SM_80, module_dir=tmp_path, use_ptx=True)
+    assert len(list(tmp_path.glob("*.ptx"))) == 1
