@@ -91,10 +91,35 @@ def test_forces_between_two_materials_are_opposite(dimension):
     assert np.abs(on_stiff(system, (0.02,) * dimension)).max() > 0.0
 
 
-def test_forces_are_the_slope_of_the_energy():
-    """The energy to second order in the displacement, of which forces are linear: central differences are exact to
-    the error of the fit in the penalty, which is of higher order. At small strains the laws are linear, too."""
-    system = system_of_all(two_blocks())
+def on_two_lattices() -> Scene:
+    """A soft square that is turned by 20 degrees, on a stiff body whose lattice is not."""
+    turned = {"type": "transform", "shape": region((0.0, -0.4), (0.4, 0.0)), "rotate": {"angle": 20.0}}
+    end = (0.4 * np.cos(np.radians(20.0)), 0.4 * np.sin(np.radians(20.0)))
+    above = {"type": "polygon", "points": [(0.0, 0.0), end, (0.8, 0.4), (0.4, 0.8), (0.0, 0.8)]}
+    soft = {"shape": turned, "material": material(nu=NU, law="neo_hookean")}
+    return composite({"soft": soft, "stiff": {"shape": above, "material": material(STIFF, HEAVY, nu=0.2)}})
+
+
+STIFF_HELD = {"clamps": {"all": {"region": region((0.4, -1.0), (2.0, 1.0))}}}
+SOFT_HELD = {"clamps": {"all": {"region": region((-1.0, -1.0), (0.4, 1.0))}}}
+"""All of a block, so that the joint is one between deformable and rigid particles of different stiffness."""
+
+
+@pytest.mark.parametrize(
+    "scene",
+    [
+        two_blocks(),
+        two_blocks(parts={"stiff": STIFF_HELD}),
+        two_blocks(parts={"soft": SOFT_HELD}),
+        on_two_lattices(),
+    ],
+    ids=["free", "stiff held", "soft held", "two lattices"],
+)
+def test_forces_are_the_slope_of_the_energy(scene):
+    """Central differences of an energy of second order in the displacement are exact, and so are forces at small
+    strains, where all laws are linear. They add up to nothing, those that clamps take up included.
+    """
+    system = system_of_all(scene)
     rng = np.random.default_rng(2)
     shift, way = (rng.normal(size=reference_of(system).shape) for _ in range(2))
 
@@ -106,7 +131,9 @@ def test_forces_are_the_slope_of_the_energy():
     at, step = 1e-6 * shift, 1e-7
     slope = (energy(at + step * way) - energy(at - step * way)) / (2.0 * step)
     deform(system, at)
-    assert np.sum(forces(system) * way) == pytest.approx(-slope, rel=1e-4)
+    found = forces(system)
+    assert np.sum(found * way) == pytest.approx(-slope, rel=1e-4)
+    assert np.abs(found.sum(axis=0)).max() < 1e-13 * np.abs(found).sum()
 
 
 def total(ledger) -> float:
