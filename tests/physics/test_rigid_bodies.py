@@ -333,9 +333,9 @@ def test_steps_that_are_taken_back_leave_nothing_behind():
     simulation.advance(0.02)
     stepper = simulation.system.stepper
     ends = []
-    stepper.keep_state()
+    kept = stepper.keep_state()
     for _ in range(2):
-        stepper.return_to_kept()
+        stepper.return_to(kept)
         stepper.find_forces_again()
         stepper.begin(1e-4)
         for _ in range(5):
