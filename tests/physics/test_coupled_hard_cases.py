@@ -1,7 +1,7 @@
-"""Fluids and structures meant to break the coupling: each survives, keeps its water out, and obeys a law where one is known.
+"""Fluids and structures meant to break the coupling: each survives and keeps its water out.
 
-A particle has leaked where it is more than half a spacing behind a surface, in space: inside the body that moves, beyond
-the plate that holds the water back, or out of the tank.
+A particle has leaked where it is more than half a spacing behind a surface: inside a body as it is deformed, beyond the
+plate that holds the water back, or out of the tank.
 """
 
 import numpy as np
@@ -43,7 +43,7 @@ def tank_of_water(bodies, width=0.6, depth=0.4, sound_speed=25.0, **changes):
 
 
 def held_back(density, young, cells, depth=0.24, end=0.6):
-    """Water on the left of a plate of so many particles, clamped to the floor, with a dry half of the tank behind it."""
+    """Water on the left of a plate of so many particles, clamped to the floor; the tank is dry behind it."""
     half, thick = 0.4, cells * DP
     plate = box((half, -4 * DP), (half + thick, 2.0 * depth - 4 * DP))
     foot = box((half, -4 * DP), (half + thick, 0.0))
@@ -149,7 +149,7 @@ def test_a_thin_plate_lighter_than_water_holds_it_back(density, young):
 
 
 def test_a_light_block_rises_and_floats():
-    """A tenth as heavy as water, from near the floor: after a second its middle is at the surface, and it does not ring."""
+    """A tenth as heavy as water, from near the floor: after a second it floats, and does not ring."""
     block = {"material": elastic(100.0, 1e6)}
     simulation = simulate(tank_of_water({"block": ((0.24, 0.1), (0.36, 0.22), block)}, width=0.6, depth=0.4))
     follow(simulation, np.linspace(0.1, 1.0, 10))
@@ -159,8 +159,8 @@ def test_a_light_block_rises_and_floats():
 
 @pytest.mark.parametrize(("density", "young"), [(1100.0, 1e7), (300.0, 1e7), (100.0, 1e8)])
 def test_a_plate_hits_water_at_ten_metres_a_second(density, young):
-    """Three particles thick, flat on the water, from a gap of three spacings. What is left of its energy is less than it
-    brought and its fall has added."""
+    """Three particles thick, flat on the water, from a gap of three spacings. What is left of its energy is less than
+    it brought and its fall has added."""
     plate = {"material": elastic(density, young), "velocity": (0.0, -10.0)}
     simulation = simulate(
         tank_of_water({"plate": ((0.2, 0.3), (0.4, 0.36), plate)}, depth=0.24, sound_speed=150.0)

@@ -147,6 +147,7 @@ class CoupledSystem:
             "bytes_per_particle": bytes_used / max(self.particle_count, 1),
             "step_limits_s": {
                 **fluid["step_limits_s"],
+                "added_mass": self.stepper.inertial_step,
                 **{f"{name}, a sub-step": dt for name, dt in structure["step_limits_s"].items()},
             },
         }
