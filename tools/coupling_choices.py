@@ -30,6 +30,7 @@ SAMPLES = 40
 BARE = ("references={}", "validation=null", "output.usd=false")
 WAYS = {
     "auto": [],
+    "auto, end velocity": ["coupling.velocity=end"],
     "auto, mean velocity": ["coupling.velocity=mean"],
     "one shared step": ["coupling.sub_steps=1"],
 }

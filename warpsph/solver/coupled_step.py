@@ -109,11 +109,11 @@ def inertial_step(density_ratio: float, smoothing_length: float, sound_speed: fl
 
     A plate of mass m an area rests on compressible fluid as on a spring K, of the order of rho c^2 over the smoothing
     length. The force of the fluid is held over its step dt, in which a mode of the plate swings by theta = omega dt,
-    and the fluid sees the velocity at the end. The eigenvalues of this map are 1 and a pair of product 1 and sum
+    and, where the fluid sees the velocity at the end, the eigenvalues of this map are 1 and a pair of product 1 and sum
     2 cos(theta) - kappa sin(theta), kappa = K dt^2 / (m theta): a little below each multiple of pi the mode grows, by
     up to kappa / 2 a step, and a structure that makes many steps in one of the fluid has modes there. What the fluid
     dissipates outweighs that while K dt^2 / m is small enough, hence about the root of the ratio. The two numbers bound
     what did not grow, but for rare resonances, at ratios from 0.03 to 1 and over two decades of stiffness
-    (docs/coupling.md). One shared step has no such modes.
+    (docs/coupling.md). The centred mean narrows the resonances. One shared step has no such modes.
     """
     return LIGHT_STEP * density_ratio**LIGHT_POWER * smoothing_length / sound_speed
