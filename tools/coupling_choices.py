@@ -63,17 +63,17 @@ def measure(scene: Scene, *of: Measure) -> Trial:
     """Run a scene to its end; kernels are compiled and the stages warmed up by a first step elsewhere."""
     Simulation(scene, device="cpu", threads=1).step()
     simulation = Simulation(scene, device="cpu", threads=1)
-    samples, seconds = [], 0.0
+    samples, seconds, sub_steps = [], 0.0, 0
     for until in np.linspace(0.0, scene.time.end, SAMPLES + 1)[1:]:
         begun = time.perf_counter()
         try:
-            simulation.advance(float(until))
+            for report in simulation.steps_until(float(until)):
+                sub_steps += report.sub_steps
         except SimulationDiverged:
             break
         finally:
             seconds += time.perf_counter() - begun
         samples.append([one(simulation) for one in of])
-    sub_steps = int(simulation.save_state().get("sub_steps", 0))
     print(scene.name, simulation.step_count, sub_steps, f"{seconds:.2f} s", file=sys.stderr, flush=True)
     return Trial(simulation.step_count, sub_steps, seconds, np.array(samples), simulation.time)
 

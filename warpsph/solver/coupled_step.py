@@ -35,7 +35,12 @@ class CoupledStepper:
     """Advances fluids and structures in time; both have been started."""
 
     def __init__(
-        self, scene: Scene, fluid: Stepper, structure: StructureStepper, parts: FaceParts, inertial_step: float
+        self,
+        scene: Scene,
+        fluid: Stepper,
+        structure: StructureStepper,
+        parts: FaceParts,
+        inertial_step: float,
     ) -> None:
         """`inertial_step` is the longest that light structures allow [s], see the function `inertial_step`."""
         sub_steps = scene.coupling.sub_steps
