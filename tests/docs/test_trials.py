@@ -2,6 +2,7 @@
 
 from pathlib import Path
 
+import coupling_choices
 import fluid_defaults
 import pytest
 import trials
@@ -25,3 +26,16 @@ def test_every_choice_is_one_that_the_scene_can_make(scene: str) -> None:
         load_scene(scene, [*fluid_defaults.SCENES[scene], *overrides])
         names.append(name)
     assert len(names) == len(set(names)) > 10
+
+
+def test_the_page_of_coupling_has_a_place_for_every_table() -> None:
+    page = coupling_choices.PAGE.read_text()
+    for name in coupling_choices.TABLES:
+        assert page.count(f"<!-- {name}:begin -->") == page.count(f"<!-- {name}:end -->") == 1
+
+
+def test_a_diverging_run_is_a_row_and_not_the_end_of_the_page() -> None:
+    """A plate of a hundredth of the stiffness that could bear the water is crushed."""
+    scene = coupling_choices.held_back(1.0, 1e2, "auto", 0.6)
+    trial = coupling_choices.measure(scene, coupling_choices.elastic_energy)
+    assert trial.end < scene.time.end

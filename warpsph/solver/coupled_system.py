@@ -11,11 +11,13 @@ import warp as wp
 from warpsph.frame import SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import host_view
+from warpsph.physics.material import material, smoothing_length
 from warpsph.sampling import SampledSet
 from warpsph.scene.schema import Scene
-from warpsph.solver.coupled_step import CoupledStepper
+from warpsph.solver.coupled_step import CoupledStepper, inertial_step
 from warpsph.solver.fluid_system import FluidSystem
 from warpsph.solver.ledger import Ledger, sum_up
+from warpsph.solver.rigid_assembly import density_of
 from warpsph.solver.structure_system import StructureSystem
 from warpsph.solver.system import StepReport
 
@@ -36,7 +38,15 @@ class CoupledSystem:
         assert faces is not None
         self._faces = faces
         self._bodies = [s for s in sampled if s.kind == "structure"]
-        self.stepper = CoupledStepper(scene, self.fluid.stepper, self.structure.stepper, faces)
+        self.stepper = CoupledStepper(
+            scene, self.fluid.stepper, self.structure.stepper, faces, self._inertial_step()
+        )
+
+    def _inertial_step(self) -> float:
+        """The longest step of the fluid [s] beside the lightest structure."""
+        lightest = min(density_of(self._scene, body) for body in self._bodies)
+        ratio = lightest / material(self._scene).density
+        return inertial_step(ratio, smoothing_length(self._scene), self.fluid.sound_speed)
 
     @property
     def time(self) -> float:
@@ -137,6 +147,7 @@ class CoupledSystem:
             "bytes_per_particle": bytes_used / max(self.particle_count, 1),
             "step_limits_s": {
                 **fluid["step_limits_s"],
+                "added_mass": self.stepper.inertial_step,
                 **{f"{name}, a sub-step": dt for name, dt in structure["step_limits_s"].items()},
             },
         }
