@@ -107,6 +107,7 @@ class CoupledStepper:
             self.lead = lead
         else:
             self._faces.show_motion(dt)
+            self.lead = 0.0
 
 
 def inertial_step(density_ratio: float, smoothing_length: float, sound_speed: float) -> float:

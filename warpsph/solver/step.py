@@ -188,6 +188,8 @@ class Stepper:
         if self._symmetry:
             self._symmetry.make_images()
         self._search.list_neighbours()
+        if self._faces:
+            self._faces.faces.look_for_fluid()
         if capacities != [rows.capacity for rows in self._search.rows]:
             self._fluid.bind_lists()
             for solid in self._solids:
