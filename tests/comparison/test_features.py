@@ -69,6 +69,15 @@ def test_integral_and_mean_over_the_window() -> None:
     assert row_of(2.0 * TIMES, feature="mean", window=[1.0, 2.0], value=3.0).value == pytest.approx(3.0)
 
 
+def test_deviation_of_a_swing_is_its_amplitude_over_the_root_of_two() -> None:
+    """Over whole periods, up to the end point that is there twice."""
+    swing = 5.0 + 0.1 * np.sin(2.0 * np.pi * TIMES)
+    row = row_of(swing, feature="deviation", value=0.0, relative_to=5.0, bound=0.02)
+    assert row.value == pytest.approx(0.1 / np.sqrt(2.0), rel=0.01)
+    assert row.error == pytest.approx(0.02 / np.sqrt(2.0), rel=0.01)
+    assert row.holds is True
+
+
 def test_average_removes_what_is_shorter_than_it() -> None:
     """A spike of one sample, 1000 high and 5 ms wide at its foot's middle, over a slow ramp: mean 1000 * 5 / 100."""
     spike = TIMES + np.where(np.arange(TIMES.size) == 200, 1000.0, 0.0)

@@ -140,6 +140,7 @@ FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
     "minimum": lambda _, column: float(column.min()),
     "maximum_time": maximum_time,
     "minimum_time": lambda time, column: maximum_time(time, -column),
+    "deviation": lambda _, column: float(column.std()),
     "mean": lambda time, column: float(np.trapezoid(column, time) / (time[-1] - time[0])),
     "integral": lambda time, column: float(np.trapezoid(column, time)),
     "period": period,
