@@ -211,8 +211,8 @@ class FeatureReference(_Reference):
     """The probe column, such as energy.kinetic[J]."""
 
     feature: Feature
-    """maximum, minimum, mean or deviation, the standard one [unit of the column]; maximum_time and minimum_time, when they
-    are [s], between samples by a parabola; integral over time [unit s]; arrival: first time at which the column
+    """maximum, minimum, mean or deviation, the standard one [unit of the column]; maximum_time and minimum_time, when
+    they are [s], between samples by a parabola; integral over time [unit s]; arrival: first time at which the column
     reaches `threshold` [s]; first_peak: largest value from the arrival until the column has fallen below half of it,
     and first_peak_time, when that is [s]; period: mean time between upward passages of the mean value [s]; decay_rate:
     k of the exponential exp(-k t) that fits best [1/s]."""
