@@ -24,8 +24,10 @@ from warpsph.solver.structure_step import StructureStepper
 from warpsph.solver.system import StepReport
 
 GRADE = 1.05
-"""Ratio of two sizes between which the step does not tell a difference, so that it seldom changes: for the fastest
-waves of a structure a step that goes to and fro is a source of energy."""
+"""Ratio of two sizes between which the step does not tell a difference."""
+GROWTH = 3
+"""Grades by which a longer step must be allowed before it is made. So the step seldom changes: for the fastest waves of
+a structure one that goes to and fro is a source of energy."""
 LIGHT_STEP, LIGHT_POWER = 0.5, 0.6
 """The step of the fluid beside a structure is at most this part of the time that sound takes across a smoothing length,
 times this power of the ratio of their densities: see `inertial_step`."""
@@ -50,6 +52,7 @@ class CoupledStepper:
         self._most_sub_steps = math.inf if sub_steps == "auto" else sub_steps
         self.target = math.inf
         self.lead = 0.0
+        self.size = 0.0
 
     def step(self) -> StepReport:
         """Advance by one step of the fluid."""
@@ -88,8 +91,10 @@ class CoupledStepper:
         if math.isfinite(self._most_sub_steps):
             limits["structure"] = self._most_sub_steps * self._structure.stable_step
         limit = min(limits, key=lambda name: limits[name])
-        grade = math.floor(math.log(limits[limit]) / math.log(GRADE))
-        return GRADE**grade, limit
+        allowed = GRADE ** math.floor(math.log(limits[limit]) / math.log(GRADE))
+        if not self.size <= allowed < 0.99 * GRADE**GROWTH * self.size:
+            self.size = allowed
+        return self.size, limit
 
     def push_structures(self) -> None:
         """Hand the forces of the fluid to the structures."""

@@ -153,13 +153,13 @@ class CoupledSystem:
         }
 
     def save(self) -> dict[str, Any]:
-        own = {"lead": self.stepper.lead}
+        own = {"lead": self.stepper.lead, "size": self.stepper.size}
         return self.fluid.save() | _prefixed(self.structure.save()) | own
 
     def load(self, saved: Mapping[str, Any]) -> None:
         self.structure.load(_own(saved))
         self.fluid.load(saved)
-        self.stepper.lead = float(saved["lead"])
+        self.stepper.lead, self.stepper.size = float(saved["lead"]), float(saved["size"])
 
 
 def _prefixed(values: Mapping[str, Any]) -> dict[str, Any]:

@@ -29,6 +29,9 @@ from warpsph.solver.time_laws import TimeLaws
 
 STIFFNESS_GRADE = 1.1
 """Ratio of two stiffnesses between which the step does not tell a difference."""
+UNEVEN = 0.75
+"""Part of its own step that a structure makes in a fluid, whose steps change in size: at omega dt = 1.6 steps that go to
+and fro by 5 % double the energy of the fastest waves within a few thousand, at 1.2 they do nothing to it."""
 SMALL = 4000
 """Particles up to which the launches of a step cost about as much as what they compute, so that it is replayed."""
 SHORTEST = 1000.0
@@ -55,7 +58,7 @@ class StructureStepper:
         self._model = parts.model
         self._contact = ContactStepper(parts.contact) if parts.contact else None
         self._rigid = RigidStepper(parts.rigid, scene.gravity) if parts.rigid else None
-        self._cfl = scene.numerics.structure.cfl
+        self._cfl = scene.numerics.structure.cfl * (UNEVEN if scene.fluids else 1.0)
         self._max_step = scene.time.max_step or math.inf
         self._end = scene.time.end
         self._laws = TimeLaws(parts)
