@@ -30,8 +30,8 @@ from warpsph.solver.time_laws import TimeLaws
 STIFFNESS_GRADE = 1.1
 """Ratio of two stiffnesses between which the step does not tell a difference."""
 UNEVEN = 0.75
-"""Part of its own step that a structure makes in a fluid, whose steps change in size: at omega dt = 1.6 steps that go to
-and fro by 5 % double the energy of the fastest waves within a few thousand, at 1.2 they do nothing to it."""
+"""Part of its own step that a structure makes in a fluid, whose steps change in size: at omega dt = 1.6 steps that go
+to and fro by 5 % multiply the energy of the fastest waves within a few thousand, at 1.2 they leave it as it is."""
 SMALL = 4000
 """Particles up to which the launches of a step cost about as much as what they compute, so that it is replayed."""
 SHORTEST = 1000.0
