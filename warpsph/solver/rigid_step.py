@@ -102,10 +102,9 @@ class RigidStepper:
         """How the bodies move, to return to."""
         return tuple(self._states)
 
-    def return_to(self, states: Sequence[RigidState], time: float) -> None:
-        """Go back to bodies of a time [s]; the state of their particles has been restored."""
+    def return_to(self, states: Sequence[RigidState]) -> None:
+        """Go back to how the bodies moved."""
         self._states = list(states)
-        self.find_forces(time)
 
     def save(self) -> dict[str, Any]:
         """The rigid bodies' part of a checkpoint: each quantity of all bodies in one array."""

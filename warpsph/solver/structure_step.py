@@ -93,11 +93,15 @@ class StructureStepper:
 
     def find_forces_again(self) -> None:
         """Bring stresses and extremes to the time of a state that has been restored with its accelerations."""
+        self.find_stresses()
+        self.survey()
+
+    def find_stresses(self) -> None:
+        """Bring stresses to the time of a state that has been restored with its accelerations."""
         self._set_clock(0.0)
         self._model.strain()
         if self._rigid:
             self._rigid.find_forces(self.time)
-        self.survey()
 
     def step(self) -> StepReport:
         """Make a few steps of one size; if they were too long after all, shorter ones to the same time."""
@@ -271,17 +275,14 @@ class StructureStepper:
         )
 
     def return_to(self, kept: Kept) -> None:
-        """Go back to a state, and bring stresses and time laws to it."""
+        """Go back to a state; stresses and time laws stay where they are."""
         for name, array in arrays_in(self._model.state).items():
             write_array(array, kept.arrays[name])
         self.time, self.stuck, self._extremes = kept.time, False, kept.extremes.copy()
-        self._set_clock(0.0)
-        self._laws.write(self.time, 0.0)
-        self._model.strain()
         if self._contact:
             self._contact.remember(kept.contact)
         if self._rigid:
-            self._rigid.return_to(kept.rigid, self.time)
+            self._rigid.return_to(kept.rigid)
 
     def look_ahead(self, time: float) -> np.ndarray:
         """Displacements [m] at a later time [s], if all that acts on the structures goes on; the state stays."""
@@ -289,6 +290,8 @@ class StructureStepper:
         self.advance(time)
         ahead = np.array(host_view(self._model.state.displacement))
         self.return_to(kept)
+        self._laws.write(self.time, 0.0)
+        self.find_stresses()
         return ahead
 
     def advance(self, time: float) -> None:
