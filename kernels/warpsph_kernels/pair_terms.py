@@ -164,23 +164,32 @@ def make_fourtakas(arithmetic: Arithmetic) -> Any:
 def make_barrier(arithmetic: Arithmetic) -> Any:
     """Return the device function of the force that keeps fluid a out of the surface particle b of a wall.
 
-    B min(1 - d/D, 1) (1 - s^2/dp^2)^2 n_b, where the distance d = x_ab . n_b along the normal of the wall is between
-    -dp/2 and D, and the distance s across it below dp; summed over a flat wall the second factor is nearly one.
+    Minus the gradient of B D g(d/D) w(s/dp), with g(q) = (1 - q)^2 / 2, but 1/2 - q below 0, and the weight
+    w(q) = (1 - q)^2 (1 + 2 q); the distance d = x_ab . n_b along the normal of the wall is between -dp/2 and D, and the
+    distance s across it below dp. Over a flat row of particles the weights sum up to one, so that only the push along
+    the normal is left and nothing brakes the flow along the wall. At a corner, whose normal is oblique to both of its
+    sides, it is the push across the normal that makes the work of a particle on its way in that of its way out.
+
     A pressure that is averaged over the fluid, as that of an extrapolated wall, does not answer to the single particle
     that comes too near, and density diffusion takes away its own: without a barrier disordered fluid creeps in. It
-    acts along the normal only, hence without friction, and not at all on particles that keep more than D - dp/2
-    off the surface.
+    does not act on particles that keep more than D - dp/2 off the surface.
     """
     constants_type, real, vector = make_constants_struct(arithmetic), arithmetic.real, arithmetic.vector
 
     def barrier(c: constants_type, x_ab: vector, normal: vector):
         d = wp.dot(x_ab, normal)
-        across = (wp.dot(x_ab, x_ab) - d * d) * c.inverse_spacing * c.inverse_spacing
-        nearness = wp.min(real(1.0) - d * c.inverse_barrier_reach, real(1.0))
-        strength = real(0.0)
-        if nearness > real(0.0) and across < real(1.0) and d * c.inverse_spacing > real(-0.5):
-            strength = nearness * (real(1.0) - across) * (real(1.0) - across)
-        return c.barrier * strength * normal
+        across = x_ab - d * normal
+        s = wp.length(across) * c.inverse_spacing
+        depth = real(1.0) - d * c.inverse_barrier_reach
+        force = vector()
+        if depth > real(0.0) and s < real(1.0) and d * c.inverse_spacing > real(-0.5):
+            push = wp.min(depth, real(1.0))
+            energy = real(0.5) * push * push + wp.max(depth - real(1.0), real(0.0))
+            outward = real(1.0) - s
+            weight = outward * outward * (real(1.0) + real(2.0) * s)
+            slope_over_s = real(6.0) * outward * c.inverse_spacing * c.inverse_spacing
+            force = push * weight * normal + energy / c.inverse_barrier_reach * slope_over_s * across
+        return c.barrier * force
 
     return wp.func(barrier)
 

@@ -60,7 +60,7 @@ class FaceModel:
         self._place_of = wp.zeros(max(walls.count, 1), dtype=wp.int32, device=device)
         self._faces_of = array(_faces_by_owner(faces.owner, structures.count), wp.int32, ndim=2)
         self._mass = array(mass, arithmetic.real)
-        self._seen, self._meet_fluid = seen, True
+        self._seen, self.meet_fluid = seen, True
         self.seen_velocity = wp.clone(structures.state.velocity)
         self._lead = wp.clone(structures.state.velocity)
         self._early = wp.clone(structures.state.displacement)
@@ -94,7 +94,7 @@ class FaceModel:
     def look_for_fluid(self) -> None:
         """Note whether the present lists hold any fluid near a face."""
         ends = host_view(self._walls.rows.ends)[: self._walls.count]
-        self._meet_fluid = bool(ends.max(initial=0) > 0)
+        self.meet_fluid = bool(ends.max(initial=0) > 0)
 
     def place(self, ahead: float) -> None:
         """Put the faces where their owners are, or will be half a step later."""
@@ -107,7 +107,7 @@ class FaceModel:
     @property
     def looks_ahead(self) -> bool:
         """Whether what the fluid sees takes to know where structures will be."""
-        return self._seen == "centred" and self._meet_fluid
+        return self._seen == "centred" and self.meet_fluid
 
     def keep_places(self) -> None:
         """Remember where the structures are before they go on."""

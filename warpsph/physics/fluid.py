@@ -21,7 +21,7 @@ from warpsph.physics.stress import StressModel
 from warpsph.physics.summation import DensitySum
 from warpsph.scene.schema import Scene
 
-BARRIER_REACH = 0.75
+BARRIER_REACH = 0.6
 """Distance from the surface particles of a wall, in spacings, below which the wall pushes fluid back. Particles at rest
 keep a whole spacing."""
 BARRIER_STRENGTH = 0.4

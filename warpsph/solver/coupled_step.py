@@ -87,10 +87,14 @@ class CoupledStepper:
 
     def _longest_step(self) -> tuple[float, str]:
         fluid = self._fluid.choose_step()
-        limits = {fluid.limit: fluid.dt, "added_mass": self.inertial_step}
+        limits = {fluid.limit: fluid.dt}
+        if self._faces.meet_fluid:
+            limits["added_mass"] = self.inertial_step
         if math.isfinite(self._most_sub_steps):
             limits["structure"] = self._most_sub_steps * self._structure.stable_step
         limit = min(limits, key=lambda name: limits[name])
+        if not self._faces.meet_fluid:
+            return limits[limit], limit
         allowed = GRADE ** math.floor(math.log(limits[limit]) / math.log(GRADE))
         if not self.size <= allowed < 0.99 * GRADE**GROWTH * self.size:
             self.size = allowed
