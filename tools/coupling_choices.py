@@ -1,8 +1,8 @@
 """Choices of coupling, measured: sub-steps, the velocity that the fluid sees, stiffness, and cost over fluid alone.
 
-Writes the tables of docs/coupling.md, in minutes, on one thread:
+Writes the tables of docs/coupling.md, on one thread; all but `cases` take minutes:
 
-    python tools/coupling_choices.py [--quick]
+    python tools/coupling_choices.py [TABLE ...] [--quick]
 """
 
 from __future__ import annotations
@@ -35,8 +35,20 @@ WAYS = {
     "one shared step": ["coupling.sub_steps=1"],
 }
 COUNTS: tuple[Literal["auto", 1], ...] = ("auto", 1)
+CASES = {
+    "cylinder_in_water": (0.005, 0.5),
+    "cylinder_in_free_water": (0.002, 0.04),
+    "floating_box": (0.02, 2.0),
+    "pushed_cylinder": (0.02, 0.12),
+    "rolling_tank_deep": (0.002, 0.2),
+    "rolling_tank_shallow": (0.002, 0.2),
+    "rolling_tank_hanging": (0.002, 0.2),
+    "dam_break_plate_2d": (0.002, 0.36),
+    "dam_break_plate_yardstick": (0.0033333333, 0.36),
+}
+"""Spacing [m] and end [s] of shipped scenes that are run with one shared step beside their own."""
 
-Measure = Callable[[Simulation], float]
+Measure = Callable[[Simulation], float | np.ndarray]
 
 
 @dataclass(frozen=True)
@@ -44,7 +56,7 @@ class Trial:
     """What a run took: steps of the fluid and of the structures, wall seconds of its steps, and samples of some
     figures (samples, figures).
 
-    `end` is the time reached [s], short of the whole where the run diverged.
+    A figure may be an array. `end` is the time reached [s], short of the whole where the run diverged.
     """
 
     steps: int
@@ -103,6 +115,12 @@ def largest_tip(simulation: Simulation) -> float:
     return float(obstacle["displacement"][np.argmax(rest[:, 1] - rest[:, 0]), 0])
 
 
+def displacements(simulation: Simulation) -> np.ndarray:
+    """Displacements of all particles of structures (n, 2) [m]."""
+    sets = simulation.frame(["displacement"]).of_kind("structure")
+    return np.concatenate([body.fields["displacement"] for body in sets])
+
+
 def hydrostatic(quick: bool) -> list[str]:
     """A metre of water on an aluminium plate of twice the thickness without damping."""
     plate = "structures.plate"
@@ -140,6 +158,38 @@ def sub_step_rows(quick: bool) -> Iterator[list[str]]:
             difference = "-" if way == "one shared step" else f"{100.0 * (value / reference - 1.0):+.2f} %"
             energy = energies[way] / energies["one shared step"]
             yield [f"`{name}`", way, f"{quantity} {value:.4g}", difference, f"{energy:.3g}", *trial.cost]
+
+
+def farthest_way(auto: Trial, shared: Trial) -> tuple[float, float]:
+    """How far the particle goes that goes farthest with the shared step [m], and the largest distance between its
+    places in the two runs at one time, in parts of that."""
+    paths = [trial.samples.reshape(len(trial.samples), -1, 2) for trial in (auto, shared)]
+    length = np.linalg.norm(paths[1], axis=2)
+    particle = length.max(axis=0).argmax()
+    apart = np.linalg.norm(paths[0][:, particle] - paths[1][:, particle], axis=1)
+    return float(length[:, particle].max()), float(apart.max() / length[:, particle].max())
+
+
+def case_rows(quick: bool) -> Iterator[list[str]]:
+    """Shipped scenes with sub-steps and with one shared step."""
+    for name, (spacing, end) in CASES.items():
+        stretch = end / 20.0 if quick else end
+        overrides = [*BARE, "probes={}", f"spacing={spacing}", f"time.end={stretch}"]
+        auto, shared = (
+            measure(load_scene(name, [*overrides, f"coupling.sub_steps={count}"]), displacements)
+            for count in COUNTS
+        )
+        way, off = farthest_way(auto, shared)
+        yield [
+            f"`{name}`",
+            f"{spacing:.3g}",
+            f"{stretch:g}",
+            f"{1e3 * way:.4g}",
+            f"{100.0 * off:.2g} %",
+            *auto.cost,
+            *shared.cost,
+            f"{shared.seconds / auto.seconds:.2f}",
+        ]
 
 
 def stiffness_rows(quick: bool) -> Iterator[list[str]]:
@@ -241,8 +291,13 @@ def density_rows(quick: bool) -> Iterator[list[str]]:
 
 
 COST = ("steps", "sub-steps", "wall [s]")
+SHARED = ("steps, shared", "sub-steps, shared", "wall, shared [s]")
 TABLES: dict[str, tuple[Sequence[str], Callable[[bool], Iterator[list[str]]]]] = {
     "sub_steps": (("scene", "coupling", "figure", "off", "elastic energy", *COST), sub_step_rows),
+    "cases": (
+        ("scene", "spacing [m]", "to [s]", "way [mm]", "off", *COST, *SHARED, "costs times"),
+        case_rows,
+    ),
     "stiffness": (("E [Pa]", "to the end", "largest tip [m]", *COST, "of the first"), stiffness_rows),
     "alone": (("run", *COST, "ratio"), alone_rows),
     "density": (("density ratio", "E [Pa]", "sub_steps", "late over early", *COST), density_rows),
@@ -253,12 +308,16 @@ TABLES: dict[str, tuple[Sequence[str], Callable[[bool], Iterator[list[str]]]]] =
 def main() -> None:
     """Make all runs and write the tables."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument(
+        "table", nargs="*", metavar="TABLE", help=f"of {', '.join(TABLES)}; all if none is named"
+    )
     parser.add_argument("--quick", action="store_true", help="short runs, printed and not written")
-    quick = parser.parse_args().quick
+    asked = parser.parse_args()
     wp.config.quiet = True
-    for name, (columns, rows) in TABLES.items():
-        lines = "\n".join(table(columns, rows(quick)))
-        if quick:
+    for name in asked.table or TABLES:
+        columns, rows = TABLES[name]
+        lines = "\n".join(table(columns, rows(asked.quick)))
+        if asked.quick:
             print(lines)
         else:
             rewrite(PAGE, f"<!-- {name}:begin -->", f"<!-- {name}:end -->", lines)
