@@ -128,6 +128,22 @@ def host_view(array: wp.array) -> np.ndarray:
 
 def write_array(target: wp.array, values: np.ndarray) -> None:
     """Overwrite the first entries of an array from the host, keeping the array's identity."""
-    if len(values):
+    if target.device.is_cpu:
+        host_view(target)[: len(values)] = values
+    elif len(values):
         source = wp.array(np.ascontiguousarray(values), dtype=target.dtype, device=target.device)
         wp.copy(target, source, count=len(values))
+
+
+class HostTable:
+    """An array that the host writes and kernels read: `values` is its memory where the device shares that of the host,
+    else a copy that `send` hands over."""
+
+    def __init__(self, array: wp.array) -> None:
+        self._array = array
+        self.values = host_view(array) if array.device.is_cpu else np.array(host_view(array))
+
+    def send(self) -> None:
+        """Let kernels see the values."""
+        if not self._array.device.is_cpu:
+            write_array(self._array, self.values)

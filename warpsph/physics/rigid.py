@@ -9,7 +9,7 @@ import warp as wp
 from warpsph_kernels.rigid import BLOCK, make_rigid_kernels, pose_size
 
 from warpsph.particles.launch import Launcher
-from warpsph.particles.state import host_view
+from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import StructureModel
 from warpsph.sampling.kinematics import Pose
 
@@ -89,7 +89,7 @@ class RigidModel:
         for row, pose in zip(self._poses, poses, strict=True):
             known = pose.derivatives()
             row[:-1] = np.concatenate([known[name].ravel() for name in POSE])
-        self.arrays["rigid_poses"].assign(self._poses)
+        write_array(self.arrays["rigid_poses"], self._poses)
 
     def _bind(self, launcher: Launcher, structures: StructureModel) -> None:
         kernels, bind = make_rigid_kernels(structures.options), launcher.bind

@@ -14,7 +14,7 @@ from warpsph_kernels import clock as clock_kernels
 from warpsph_kernels.clock import BLOCK, LIMITS, StepLimits, make_clock_kernels
 
 from warpsph.particles.launch import Pass
-from warpsph.particles.state import host_view
+from warpsph.particles.state import host_view, write_array
 from warpsph.physics.faces import NOW
 from warpsph.physics.fluid import material, padded, smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
@@ -71,7 +71,7 @@ class Stepper:
 
     def resume(self, clock: np.ndarray) -> None:
         """Go on from a restored state with the lists, the order and the survey that it had."""
-        self._clock.assign(clock)
+        write_array(self._clock, clock)
         self._host_clock = host_view(self._clock)
         self.place_solids(self.time)
         self.forget_removed()
@@ -232,7 +232,7 @@ class Stepper:
         values = np.array(host_view(self._clock))
         for name, value in entries.items():
             values[getattr(clock_kernels, name)] = value
-        self._clock.assign(values)
+        write_array(self._clock, values)
         self._host_clock = host_view(self._clock)
 
     def _read(self, entry: int) -> float:

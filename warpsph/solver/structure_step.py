@@ -107,7 +107,7 @@ class StructureStepper:
         """Make a few steps of one size; if they were too long after all, shorter ones to the same time."""
         kept = self.keep_state()
         dt, planned, limit = self.choose_step()
-        self.begin(dt)
+        self.begin(dt, planned)
         count = self.allowed(dt, planned)
         limit = limit if count == planned else "contact"
         end = self.target if limit == "frame" else self.time + count * dt
@@ -132,7 +132,7 @@ class StructureStepper:
             left = math.ceil((end - self.time) / self.stable_step * (1.0 - 1e-9))
             dt = (end - self.time) / max(left, 1)
             self.stuck = left > 1 and dt < shortest
-            self.begin(dt)
+            self.begin(dt, 1)
             self.allowed(dt, 1)
             self.sub_step()
             before = self.extremes["speed"]
@@ -223,10 +223,10 @@ class StructureStepper:
         """Whether a step [s] is beyond the stability limit of the present state."""
         return dt * self.frequency * math.sqrt(max(self._extremes[STIFFENING], 1.0)) > 2.0
 
-    def begin(self, dt: float, damping: float = 0.0) -> None:
-        """Set step size and damping, and the values of time laws for the coming steps."""
-        self._set_clock(dt, damping)
-        self._laws.write(self.time, dt)
+    def begin(self, dt: float, count: int) -> None:
+        """Set the step size, and the values of time laws for so many steps to come."""
+        self._set_clock(dt)
+        self._laws.write(self.time, dt, count)
         if self._rigid:
             self._rigid.begin(self.time, dt)
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from warpsph.particles.state import host_view
+from warpsph.particles.state import HostTable
 from warpsph.physics.structure import SUB_STEPS
 from warpsph.scene.expressions import evaluate
 from warpsph.solver.structure_assembly import StructureParts
@@ -19,21 +19,21 @@ class TimeLaws:
         self._motions = [c.motion for c in parts.clamps if c.motion is not None] + [
             *parts.wall_motions.values()
         ]
-        self._load_factor = np.array(host_view(self._model.scratch.load_factor))
-        self._prescriptions = np.array(host_view(self._model.scratch.prescriptions))
+        self._load_factor = HostTable(self._model.scratch.load_factor)
+        self._prescriptions = HostTable(self._model.scratch.prescriptions)
 
-    def write(self, time: float, dt: float) -> None:
-        """Tabulate all laws at time, time + dt, ... [s]."""
+    def write(self, time: float, dt: float, count: int = 0) -> None:
+        """Tabulate all laws at time, time + dt, ..., time + count dt [s]; without a count, all rows at `time`."""
         if not self._model.has_time_laws:
             return
-        times = time + dt * np.arange(SUB_STEPS + 1)
+        times = time + dt * np.arange((count or SUB_STEPS) + 1)
         for column, factor in enumerate(self._factors):
-            self._load_factor[:, column] = evaluate(factor, {"t": times})
+            self._load_factor.values[: len(times), column] = evaluate(factor, {"t": times})
         for column, motion in enumerate(self._motions):
-            for row in range(1 if dt == 0.0 else len(times)):
+            for row in range(len(times) if count else 1):
                 for name, value in motion(float(times[row])).derivatives().items():
-                    self._prescriptions[name][row, column] = value
-        if dt == 0.0 and self._motions:
-            self._prescriptions[1:] = self._prescriptions[0]
-        self._model.scratch.load_factor.assign(self._load_factor)
-        self._model.scratch.prescriptions.assign(self._prescriptions)
+                    self._prescriptions.values[name][row, column] = value
+        if not count and self._motions:
+            self._prescriptions.values[1:] = self._prescriptions.values[0]
+        self._load_factor.send()
+        self._prescriptions.send()
