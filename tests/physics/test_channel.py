@@ -73,6 +73,23 @@ def test_free_slip_walls_do_not_brake(wall, viscosity):
     assert v == pytest.approx(np.full_like(v, DRIVE * 0.1), rel=1e-4)
 
 
+@pytest.mark.parametrize("t", [0.045, 0.225])
+def test_couette_start_up_between_structures(t):
+    """An elastic floor, clamped at its foot, and a rigid lid that moves: the fluid sticks to both as to walls."""
+    scene = channel(20, numerics=dict(LAMINAR))
+    stiff = {"density": 1000.0, "youngs_modulus": 1.0, "poisson_ratio": 0.3}
+    plates = {
+        name: {"shape": plate.shape.model_dump(), "slip": "no_slip", "material": stiff}
+        for name, plate in scene.boundaries.items()
+    }
+    low, high = plates["floor"]["shape"]["min"], plates["floor"]["shape"]["max"]
+    foot = {"type": "box", "min": low, "max": (high[0], 0.5 * low[1])}
+    plates["floor"]["clamps"] = {"foot": {"region": foot}}
+    plates["lid"]["rigid"] = {"free": [], "motion": [{"type": "linear", "velocity": (LID_SPEED, 0.0)}]}
+    scene = type(scene)(**scene.model_dump() | {"boundaries": {}, "structures": plates})
+    assert largest_error(scene, couette, t) < 0.025
+
+
 def test_no_slip_holds_for_dynamic_walls_too():
     scene = channel(20, drive=DRIVE, numerics=LAMINAR | {"wall": {"type": "dynamic"}})
     # Friction against the wall's own velocity puts the zero of the profile half a spacing into the wall: a gap that

@@ -245,3 +245,38 @@ def test_from_jelly_to_steel(young):
     most = 0.5 * DP if young < 1e5 else 1e-4
     assert np.abs(rows(simulation, "plate", "displacement")[:, 0]).max() < most
     assert simulation.step_count < 250
+
+
+def test_forty_plates_with_eighty_clamps_stand_in_still_water():
+    """A comb on the floor of a tank, every plate held by two clamps: each stays where its own feet are."""
+    pitch, count = 8 * DP, 40
+    plates, displaced = {}, []
+    for k in range(count):
+        left, middle, right = k * pitch, (k + 0.5) * pitch, (k + 1) * pitch
+        shape = box((middle - 2 * DP, -4 * DP), (middle + 2 * DP, 8 * DP))
+        halves = {
+            "left": {"region": box((left, -1.0), (middle, 0.0))},
+            "right": {"region": box((middle, -1.0), (right, 0.0))},
+        }
+        plates[f"plate_{k}"] = {"shape": shape, "material": elastic(1500.0, 1e6), "clamps": halves}
+        displaced.append(shape)
+    width = count * pitch
+    water = {"type": "difference", "base": box((0.0, 0.0), (width, 0.24)), "subtract": displaced}
+    scene = Scene(
+        name="comb",
+        dimension=2,
+        spacing=DP,
+        gravity=(0.0, -GRAVITY),
+        time={"end": 0.1, "frame_rate": 20.0},
+        numerics={"sound_speed": 25.0},
+        fluids={"water": {"shape": water, "density": 1000.0, "pressure": {"type": "hydrostatic"}}},
+        boundaries={"tank": {"shape": box((0.0, 0.0), (width, 0.4)), "side": "outside", "open": ("y_max",)}},
+        structures=plates,
+    )
+    simulation = simulate(scene)
+    follow(simulation, [0.05, 0.1])
+    for k, name in enumerate(plates):
+        place, way = rows(simulation, name), rows(simulation, name, "displacement")
+        assert np.array_equal(way[place[:, 1] < 0.0], np.zeros_like(way[place[:, 1] < 0.0]))
+        assert place[:, 0].mean() == pytest.approx((k + 0.5) * pitch, abs=0.1 * DP)
+        assert np.abs(way).max() < 0.1 * DP

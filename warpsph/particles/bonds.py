@@ -103,8 +103,10 @@ def pairs_within(
 
 def periodic_tree(position: np.ndarray, periods: np.ndarray) -> cKDTree:
     """Search tree over positions (n, dim) [m] in a space of these periods (dim,) [m], zero where there is none."""
-    box = np.where(periods > 0.0, periods, 0.0)
-    inside = np.where(periods > 0.0, np.mod(position, np.where(periods > 0.0, periods, 1.0)), position)
+    box, repeats = np.where(periods > 0.0, periods, 0.0), periods > 0.0
+    inside = np.where(repeats, np.mod(position, np.where(repeats, periods, 1.0)), position)
+    # A place a rounding before zero is as far as the period, which the tree does not take.
+    inside = np.where(repeats & (inside >= box), 0.0, inside)
     return cKDTree(inside, boxsize=box if box.any() else None)
 
 
