@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 import warp as wp
@@ -13,8 +13,8 @@ from warpsph.particles.state import host_view, write_array
 from warpsph.physics.assembly import Assembly, WallRange
 from warpsph.physics.structure import StructureModel
 from warpsph.sampling.faces import Faces
+from warpsph.scene.structures import SeenVelocity
 
-SeenVelocity = Literal["centred", "end", "mean"]
 HALF_STEP, NOW = 0.5, 0.0
 """How many steps ahead of the structures faces are placed."""
 

@@ -42,7 +42,7 @@ def faces_of(position: np.ndarray, shape: Shape | None, spacing: float, reach: f
     principal axis of sum n (x) n. The first face looks to the nearer surface. The mirror points of a body of several
     shapes (None) lie before its surface particles.
     """
-    normal = surface_normals(position, spacing, reach)
+    normal = particle_normals(position, spacing, reach)
     axis, ahead, behind = _thin_axis(position, normal, spacing, reach)
     thin = np.flatnonzero(np.isfinite(ahead + behind))
     turn = np.where(ahead[thin] <= behind[thin], 1.0, -1.0)[:, None] * axis[thin]
@@ -60,7 +60,7 @@ def faces_of(position: np.ndarray, shape: Shape | None, spacing: float, reach: f
     )
 
 
-def surface_normals(position: np.ndarray, spacing: float, reach: float) -> np.ndarray:
+def particle_normals(position: np.ndarray, spacing: float, reach: float) -> np.ndarray:
     """Unit normals (n, dim) out of a body at its surface particles, zero for those behind.
 
     A normal points away from the particles around, weighted towards the near ones; the particle lies at the surface if

@@ -23,6 +23,9 @@ from warpsph.scene.types import (
     Vector,
 )
 
+SeenVelocity = Literal["centred", "end", "mean"]
+"""What the fluid takes for the velocity of structures at the end of its step, see `Coupling`."""
+
 
 class Material(SceneModel):
     """An elastic material."""
@@ -197,7 +200,7 @@ class Coupling(SceneModel):
     structures make as many steps within that as they need. A number: at most so many, the step of the fluid is
     shortened to what they allow; 1 is one shared step. Default: auto."""
 
-    velocity: Literal["centred", "end", "mean"] = "centred"
+    velocity: SeenVelocity = "centred"
     """Velocity of structures that the fluid sees at the end of its step. centred: the mean from the middle of this step
     to the middle of the next, for which structures look half a step ahead; end: that of the moment; mean: over the step
     that has been made, after Zhang, Rezavand & Hu (2021), which is half a step old. Default: centred."""

@@ -116,18 +116,7 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     mass = density * volume
     loads = list(_loads(scene, bodies))
     wall_motions = rigid_motions(scene) if scene.contact else {}
-    options = StructureOptions(
-        arithmetic=arithmetic,
-        moving_clamps=any(clamp.motion for clamp in clamps),
-        loads=len(loads),
-        damped=any(s.damping > 0.0 for s in scene.structures.values()) or is_static(scene),
-        contact=scene.contact is not None,
-        immersed=bool(scene.fluids),
-        moving_walls=bool(wall_motions),
-        thin=bool(bonds.thin.any()),
-        scattered=gradients is not None,
-        bonded=bool(scene.bonds),
-    )
+    options = _select_code(scene, clamps, len(loads), wall_motions, bonds, gradients)
     ranges = _law_ranges(scene, bodies)
     blocks = sum(one.blocks for one in ranges)
     moving = sum(clamp.motion is not None for clamp in clamps)
@@ -162,6 +151,29 @@ def assemble_structures(scene: Scene, sets: Sequence[SampledSet], launcher: Laun
     factors = tuple(spec.factor for spec, _ in loads)
     among = assemble_rigid(scene, [(body.first, body.sampled) for body in bodies], model, launcher)
     return StructureParts(model, bodies, clamps, factors, bonds, mass, contact, wall_motions, among)
+
+
+def _select_code(
+    scene: Scene,
+    clamps: Sequence[HeldRegion],
+    loads: int,
+    wall_motions: Mapping[str, RigidMotion],
+    bonds: Bonds,
+    gradients: Gradients | None,
+) -> StructureOptions:
+    """The options that select device code."""
+    return StructureOptions(
+        arithmetic=Arithmetic(scene.dimension, scene.numerics.precision),
+        moving_clamps=any(clamp.motion for clamp in clamps),
+        loads=loads,
+        damped=any(s.damping > 0.0 for s in scene.structures.values()) or is_static(scene),
+        contact=scene.contact is not None,
+        immersed=bool(scene.fluids),
+        moving_walls=bool(wall_motions),
+        thin=bool(bonds.thin.any()),
+        scattered=gradients is not None,
+        bonded=bool(scene.bonds),
+    )
 
 
 def is_static(scene: Scene) -> bool:
