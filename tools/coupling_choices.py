@@ -40,9 +40,9 @@ CASES = {
     "cylinder_in_free_water": (0.002, 0.04),
     "floating_box": (0.02, 2.0),
     "pushed_cylinder": (0.02, 0.12),
-    "rolling_tank_deep": (0.002, 0.2),
-    "rolling_tank_shallow": (0.002, 0.2),
-    "rolling_tank_hanging": (0.002, 0.2),
+    "rolling_tank_deep": (0.002, 0.1),
+    "rolling_tank_shallow": (0.002, 0.1),
+    "rolling_tank_hanging": (0.002, 0.1),
     "dam_break_plate_2d": (0.002, 0.36),
     "dam_break_plate_yardstick": (0.0033333333, 0.36),
 }
