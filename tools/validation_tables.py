@@ -4,7 +4,7 @@ warpsph validate --json > out/validation.jsonl
 python tools/validation_tables.py out/validation.jsonl
 
 New lines replace those of the same scene and resolution in docs/validation.jsonl; without a file only the tables are
-written anew.
+written anew. Lines of compared options (`--compare`) are no part of the record.
 """
 
 from __future__ import annotations
@@ -40,7 +40,7 @@ Row = Mapping[str, Any]
 
 def merged(old: Iterable[Row], new: Iterable[Row]) -> list[Row]:
     """The old rows, those of scenes and resolutions that are among the new ones replaced, by scene and spacing."""
-    new = list(new)
+    new = [row for row in new if not row.get("options")]
     renewed = {(row["scene"], row["resolution"]) for row in new}
     kept = [row for row in old if (row["scene"], row["resolution"]) not in renewed]
     return sorted([*kept, *new], key=lambda row: (row["scene"], -row["resolution"]))

@@ -64,6 +64,48 @@ def test_table_states_the_observed_order(
     assert "tank, front: observed order 2.00" in result.stdout
 
 
+def test_no_error_is_quoted_below_the_uncertainty_of_the_reference(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    ending(lambda out: fake_runs.summary({**fake_runs.REFERENCE_ROW, "uncertainty": 0.03}))
+    result = warpsph("validate", scene_file, "--out", tmp_path)
+    assert "<= 3 %" in result.stdout
+
+
+def test_compared_values_run_at_every_resolution(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    ending(lambda out: fake_runs.summary())
+    request = ("--resolutions", "0.5,0.25", "--compare", "numerics.kernel=wendland_c2,cubic_spline")
+    result = warpsph("validate", scene_file, *request, "--json", "--out", tmp_path)
+    rows = [json.loads(line) for line in result.stdout.splitlines()]
+    assert [(row["options"]["numerics.kernel"], row["resolution"]) for row in rows] == [
+        ("wendland_c2", 0.5),
+        ("wendland_c2", 0.25),
+        ("cubic_spline", 0.5),
+        ("cubic_spline", 0.25),
+    ]
+    table = warpsph("validate", scene_file, *request, "--out", tmp_path).stdout
+    assert "numerics.kernel=cubic_spline" in table
+
+
+@pytest.mark.parametrize(
+    ("option", "told"),
+    [
+        ("numerics.kernel=wendland_c2,cone", "--compare numerics.kernel=cone"),
+        ("numerics.colour=1,2", "--compare numerics.colour=1"),
+        ("numerics.kernel=cubic_spline", "at least two different values"),
+    ],
+)
+def test_bad_options_are_found_before_the_first_run(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None], option: str, told: str
+) -> None:
+    ending(raising(AssertionError("nothing may run")))
+    result = warpsph("validate", scene_file, "--compare", option, "--out", tmp_path)
+    assert result.exit_code == 2
+    assert told in result.stderr
+
+
 def test_diverged_run_fails_and_the_others_still_run(
     warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
 ) -> None:

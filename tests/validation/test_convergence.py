@@ -22,7 +22,7 @@ references:
 """
 
 
-def result(spacing: float, value: float | None) -> CaseResult:
+def result(spacing: float, value: float | None, *options: str) -> CaseResult:
     row = {
         "quantity": "impulse",
         "value": value,
@@ -31,7 +31,7 @@ def result(spacing: float, value: float | None) -> CaseResult:
         "bound": None,
         "holds": None,
     }
-    return CaseResult(Case(scene_from_yaml(SCENE % spacing, Path())), (row,))
+    return CaseResult(Case(scene_from_yaml(SCENE % spacing, Path()), options), (row,))
 
 
 def verdicts(*values: float | None) -> list[bool | None]:
@@ -52,3 +52,15 @@ def test_one_resolution_shows_no_convergence() -> None:
 def test_a_figure_that_is_missing_does_not_hold() -> None:
     assert verdicts(10.0, None) == [None, False]
     assert verdicts(None, 10.0) == [None, False]
+
+
+def test_each_choice_of_options_is_judged_by_itself() -> None:
+    results = [
+        result(0.2, 10.0, "kernel=a"),
+        result(0.1, 10.5, "kernel=a"),
+        result(0.2, 20.0, "kernel=b"),
+        result(0.1, 30.0, "kernel=b"),
+    ]
+    cases = [r.case for r in results]
+    judgements = [judged(r, results[:k], cases).rows[0]["holds"] for k, r in enumerate(results)]
+    assert judgements == [None, True, None, False]

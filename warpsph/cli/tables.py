@@ -9,8 +9,8 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from warpsph.validation.order import observed_order
 from warpsph.validation.runner import CaseResult
+from warpsph.validation.study import options_in_words, studies_of
 
 Row = Mapping[str, Any]
 
@@ -30,13 +30,14 @@ def comparison_table(rows: Iterable[Row]) -> Group:
 
 def validation_table(results: Sequence[CaseResult]) -> Group:
     """Error and cost of every quantity at every resolution, with the observed order of convergence."""
-    cost = ("wall [s]", "M particle-steps/s")
-    table = Table("scene", "spacing [m]", *_FIGURES, *cost, box=None, pad_edge=False)
-    for result in results:
-        for row in result.rows:
-            table.add_row(row["scene"], f"{row['resolution']:g}", *_figures(row), *_cost(row))
-    failures = [f"{result.case.directory}: {result.failure}" for result in results if result.failure]
     rows = [row for result in results for row in result.rows]
+    compared = ("options",) if any(row.get("options") for row in rows) else ()
+    cost = ("wall [s]", "M particle-steps/s")
+    table = Table("scene", *compared, "spacing [m]", *_FIGURES, *cost, box=None, pad_edge=False)
+    for row in rows:
+        options = [options_in_words(row.get("options"))] if compared else []
+        table.add_row(row["scene"], *options, f"{row['resolution']:g}", *_figures(row), *_cost(row))
+    failures = [f"{result.case.directory}: {result.failure}" for result in results if result.failure]
     return Group(table, *_remarks(rows), *_orders(rows), *failures)
 
 
@@ -48,7 +49,7 @@ def _figures(row: Row) -> tuple[str | Text, ...]:
         row["quantity"],
         _number(row["value"]),
         _number(row["reference"]),
-        _error(row["error"], row),
+        _quoted(row),
         _error(row["bound"], row),
         VERDICTS[row["holds"]],
     )
@@ -70,14 +71,17 @@ def _error(error: float | None, row: Row) -> str:
     return f"{error:.3g} {unit}" if unit else f"{100.0 * error:.3g} %"
 
 
+def _quoted(row: Row) -> str:
+    """The error, or at most the uncertainty of the reference: nothing closer than that can be claimed."""
+    error, uncertainty = row["error"], row.get("uncertainty") or 0.0
+    below = error is not None and error < uncertainty
+    return f"<= {_error(uncertainty, row)}" if below else _error(error, row)
+
+
 def _remarks(rows: Iterable[Row]) -> list[str]:
     remarks = []
     for row in rows:
-        name = (
-            f"{row['scene']} at {row['resolution']:g}, {row['quantity']}"
-            if "scene" in row
-            else row["quantity"]
-        )
+        name = f"{_run(row)}, {row['quantity']}" if "scene" in row else row["quantity"]
         if row.get("lag") is not None:
             remarks.append(f"{name}: after a start-up lag of {row['lag']:.4g} s")
         if row.get("note"):
@@ -85,16 +89,20 @@ def _remarks(rows: Iterable[Row]) -> list[str]:
     return remarks
 
 
+def _run(row: Row) -> str:
+    options = f" with {options_in_words(row['options'])}" if row.get("options") else ""
+    return f"{row['scene']} at {row['resolution']:g}{options}"
+
+
 def _orders(rows: Sequence[Row]) -> list[str]:
-    """Relative errors over spacing: how fast each falls. A violated limit is no discretisation error."""
+    """How fast each error falls with the spacing."""
     lines = []
-    for scene, quantity in dict.fromkeys((row["scene"], row["quantity"]) for row in rows):
-        own = [
-            r for r in rows if (r["scene"], r["quantity"]) == (scene, quantity) and not r.get("error_unit")
-        ]
-        errors = [float("nan") if r["error"] is None else r["error"] for r in own]
-        order = observed_order([r["resolution"] for r in own], errors)
-        if order is not None:
-            spread = "" if order.standard_error is None else f" +- {order.standard_error:.2g}"
-            lines.append(f"{scene}, {quantity}: observed order {order.order:.2f}{spread}")
+    for study in studies_of(rows):
+        if study.order is not None:
+            label = f" with {study.label}" if study.label else ""
+            spread = study.order.standard_error
+            error = "" if spread is None else f" +- {spread:.2g}"
+            lines.append(
+                f"{study.scene}{label}, {study.quantity}: observed order {study.order.order:.2f}{error}"
+            )
     return lines

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from rich.console import Console
 
     from warpsph.scene.schema import Scene
+    from warpsph.validation.options import ComparedOption
     from warpsph.validation.runner import Case, CaseResult, RunScene
 
 Scenes = Annotated[
@@ -32,6 +33,15 @@ Quick = Annotated[
 Resolutions = Annotated[
     str | None, typer.Option(metavar="DP,DP,...", help="Particle spacings [m] instead of the scenes' own.")
 ]
+Compare = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--compare",
+        metavar="KEY=VALUE,VALUE,...",
+        help="Run with each of these values of the scene, as in numerics.kernel=wendland_c2,cubic_spline; repeatable: "
+        "then with every combination.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object a line instead of a table.")]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of all runs.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
@@ -42,6 +52,7 @@ def validate(
     scenes: Scenes = None,
     quick: Quick = False,
     resolutions: Resolutions = None,
+    compare: Compare = None,
     json_lines: Json = False,
     out: Out = Path("out/validation"),
     device: Device = None,
@@ -62,13 +73,14 @@ def validate(
     from warpsph.validation.runner import run_case
 
     spacings = parse_spacings(resolutions)
-    cases = planned_cases(scenes, quick, spacings, overrides or ())
+    compared = parse_compared(compare or ())
+    cases = planned_cases(scenes, quick, spacings, overrides or (), compared)
     progress = plain_console(stderr=True, quiet=quiet)
     start_warp(device, verbose=verbose)
     results: list[CaseResult] = []
     try:
         for number, case in enumerate(cases, start=1):
-            progress.print(f"{number}/{len(cases)} {case.scene.name} at spacing {case.scene.spacing:g} m")
+            progress.print(f"{number}/{len(cases)} {in_words(case)}")
             result = run_case(case, out, runner_with(progress, quiet, device, threads))
             result = judged(result, results, cases)
             results.append(result)
@@ -80,8 +92,18 @@ def validate(
     return ExitCode.OK if all(result.holds for result in results) else ExitCode.FAILED
 
 
+def in_words(case: Case) -> str:
+    """Which case it is, for the progress."""
+    options = f" with {', '.join(case.options)}" if case.options else ""
+    return f"{case.scene.name} at spacing {case.scene.spacing:g} m{options}"
+
+
 def planned_cases(
-    scenes: Sequence[str] | None, quick: bool, resolutions: Sequence[float] | None, overrides: Sequence[str]
+    scenes: Sequence[str] | None,
+    quick: bool,
+    resolutions: Sequence[float] | None,
+    overrides: Sequence[str],
+    compared: Sequence[ComparedOption],
 ) -> tuple[Case, ...]:
     """Every run of the validation, all loaded, so that bad input shows before the first run."""
     from warpsph.validation.runner import cases_of, scenes_with_references
@@ -89,7 +111,9 @@ def planned_cases(
     return tuple(
         case
         for scene in scenes or scenes_with_references()
-        for case in cases_of(scene, quick=quick, resolutions=resolutions, overrides=overrides)
+        for case in cases_of(
+            scene, quick=quick, resolutions=resolutions, overrides=overrides, compared=compared
+        )
     )
 
 
@@ -116,6 +140,16 @@ def parse_spacings(text: str | None) -> tuple[float, ...] | None:
     if not spacings or not all(0.0 < spacing < float("inf") for spacing in spacings):
         raise BadInput(f"--resolutions {text}: give particle spacings [m] greater than 0, as in 0.02,0.01")
     return spacings
+
+
+def parse_compared(texts: Sequence[str]) -> tuple[ComparedOption, ...]:
+    """Options and their values from such as numerics.kernel=wendland_c2,cubic_spline. Raises BadInput."""
+    from warpsph.validation.options import compared_options
+
+    try:
+        return compared_options(texts)
+    except ValueError as error:
+        raise BadInput(f"--compare {error}") from error
 
 
 def print_json_lines(result: CaseResult) -> None:

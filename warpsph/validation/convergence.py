@@ -11,14 +11,14 @@ from warpsph.validation.runner import Case, CaseResult
 
 
 def judged(result: CaseResult, earlier: Sequence[CaseResult], cases: Sequence[Case]) -> CaseResult:
-    """The result of the finest case of a scene, with its figures held against those of the next coarser case.
+    """The result of the finest case of a scene, with its figures held against those of the next coarser case with the
+    same options.
 
     Only references that ask for `convergence` change: the coarser figure becomes their reference. Results of other
     cases come back as they are.
     """
-    name = result.case.scene.name
-    finest = [case for case in cases if case.scene.name == name][-1] == result.case
-    coarser = [other for other in earlier if other.case.scene.name == name]
+    finest = [case for case in cases if case.series == result.case.series][-1] == result.case
+    coarser = [other for other in earlier if other.case.series == result.case.series]
     if not finest or not coarser:
         return result
     values = {row["quantity"]: row["value"] for row in coarser[-1].rows}

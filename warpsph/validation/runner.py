@@ -5,13 +5,16 @@ from __future__ import annotations
 import json
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import product
 from pathlib import Path
 from typing import Any
+from urllib.parse import quote
 
 from warpsph.scene import load_scene, shipped_scenes
 from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.references import bound_at
 from warpsph.scene.schema import Scene, Validation
+from warpsph.validation.options import ComparedOption, as_mapping, combinations, problems_of, unique
 
 RunScene = Callable[[Scene, Path], Mapping[str, Any]]
 """Runs a scene into a directory and returns its summary."""
@@ -22,14 +25,21 @@ RUN_FACTS = ("wall_seconds", "steps", "particles", "particle_steps_per_second", 
 
 @dataclass(frozen=True)
 class Case:
-    """A scene at one resolution, ready to run."""
+    """A scene at one resolution, ready to run; `options` are the compared values in it, as `key=value`."""
 
     scene: Scene
+    options: tuple[str, ...] = ()
 
     @property
     def directory(self) -> Path:
         """Where the case runs, relative to the directory of the whole validation."""
-        return Path(self.scene.name) / f"{self.scene.spacing:g}"
+        parts = (quote(",".join(self.options), safe="=,"), f"{self.scene.spacing:g}")
+        return Path(self.scene.name, *filter(None, parts))
+
+    @property
+    def series(self) -> tuple[str, tuple[str, ...]]:
+        """What all resolutions of the same scene with the same options share."""
+        return self.scene.name, self.options
 
 
 @dataclass(frozen=True)
@@ -47,12 +57,18 @@ class CaseResult:
 
 
 def cases_of(
-    scene: str, *, quick: bool, resolutions: Sequence[float] | None, overrides: Sequence[str]
+    scene: str,
+    *,
+    quick: bool,
+    resolutions: Sequence[float] | None,
+    overrides: Sequence[str],
+    compared: Sequence[ComparedOption] = (),
 ) -> tuple[Case, ...]:
     """A scene at the spacings [m] asked for, else at those that its `validation` names, coarse ones first.
 
-    Overrides beat those of `validation.set`. Frames are not kept as USD unless an override says so. Raises
-    SceneError if any case cannot run, or if the scene has nothing to compare with.
+    Every combination of the compared options runs at all of them. These beat overrides, which beat those of
+    `validation.set`. Frames are not kept as USD unless an override says so. Raises SceneError with the problems of
+    all cases that cannot run, or if the scene has nothing to compare with.
     """
     base = load_scene(scene, overrides)
     if not base.references:
@@ -63,10 +79,17 @@ def cases_of(
     prescribed = base.validation.set if base.validation else {}
     own = [f"{key}={json.dumps(value)}" for key, value in prescribed.items()]
     spacings = sorted(set(resolutions or _spacings(base, quick=quick)), reverse=True)
-    return tuple(
-        Case(load_scene(scene, ["output.usd=false", *own, *overrides, f"spacing={spacing!r}"]))
-        for spacing in spacings
-    )
+    cases: list[Case] = []
+    problems: list[Problem] = []
+    for options, spacing in product(combinations(compared), spacings):
+        every = ["output.usd=false", *own, *overrides, *options, f"spacing={spacing!r}"]
+        try:
+            cases.append(Case(load_scene(scene, every), options))
+        except SceneError as error:
+            problems.extend(problems_of(error, options))
+    if problems:
+        raise SceneError(unique(problems))
+    return tuple(cases)
 
 
 def scenes_with_references() -> tuple[str, ...]:
@@ -101,7 +124,8 @@ def _facts(summary: Mapping[str, Any]) -> dict[str, Any]:
 
 
 def _row(case: Case, comparison: Mapping[str, Any], facts: Mapping[str, Any]) -> dict[str, Any]:
-    return {"scene": case.scene.name, "resolution": case.scene.spacing, **comparison, **facts}
+    options = {"options": as_mapping(case.options)} if case.options else {}
+    return {"scene": case.scene.name, "resolution": case.scene.spacing, **options, **comparison, **facts}
 
 
 def _row_of_failed_run(case: Case, quantity: str) -> dict[str, Any]:
