@@ -50,6 +50,14 @@ def test_errors_are_relative_to_the_peak_of_the_profile() -> None:
     assert row.error == pytest.approx(0.8 / 2.6, rel=1e-9)
 
 
+def test_the_points_of_the_profile_are_kept() -> None:
+    (sample,) = row_of(scene_with(), water(3.0)).samples
+    expected = [[y, 1.0 + 3.0 * y, 1.0 + 2.0 * y] for y in TABLE["position"]]
+    np.testing.assert_allclose(sample.as_record()["points"], expected, rtol=1e-9)
+    (dry,) = row_of(scene_with(through=[2.5, 0.0]), water(2.0)).samples
+    assert dry.as_record()["points"][0] == [0.2, None, 1.4]
+
+
 def test_a_dry_point_is_no_number() -> None:
     assert row_of(scene_with(bound=1.0, through=[2.5, 0.0]), water(2.0)).holds is False
 

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from warpsph.comparison.profiles import INTERPOLATED_FROM, profile_values
-from warpsph.comparison.row import Comparison, Sample, relative_errors, representative
+from warpsph.comparison.row import Comparison, Points, Sample, relative_errors, representative
 from warpsph.frame import Frame, SetFrame
 from warpsph.scene.expressions import evaluate
 from warpsph.scene.references import FieldReference, ProfileReference, bound_at
@@ -23,7 +23,7 @@ FrameReference = FieldReference | ProfileReference
 class FieldSample:
     """A field against its reference at one frame, reduced over particles or points in the norm of the reference.
 
-    `asked_time` is the time that the reference names [s], `frame_time` that of the frame.
+    `asked_time` is the time that the reference names [s], `frame_time` that of the frame, `points` those of a profile.
     """
 
     reference: str
@@ -32,6 +32,7 @@ class FieldSample:
     value: float
     expected: float
     error: float
+    points: Points = ()
 
 
 def fields_needed(scene: Scene) -> frozenset[str]:
@@ -93,12 +94,16 @@ def _asked_times(reference: FrameReference, scene: Scene) -> tuple[float, ...]:
 
 
 def _sample(name: str, reference: FrameReference, scene: Scene, asked: float, frame: Frame) -> FieldSample:
+    points: Points = ()
     if isinstance(reference, ProfileReference):
-        values, expected = profile_values(reference, scene, frame)
+        position, values, expected = profile_values(reference, scene, frame)
+        points = tuple(zip(position.tolist(), values.tolist(), expected.tolist(), strict=True))
     else:
         values, expected = _particle_values(reference, frame)
     errors = relative_errors(values, expected, reference.relative_to)
-    return FieldSample(name, asked, frame.time, *representative(values, expected, errors, reference.norm))
+    return FieldSample(
+        name, asked, frame.time, *representative(values, expected, errors, reference.norm), points
+    )
 
 
 def _particle_values(reference: FieldReference, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
@@ -126,4 +131,4 @@ def _nearest(samples: Iterable[FieldSample], asked: float) -> Sample:
     if not candidates:
         return Sample(asked, math.nan, math.nan, math.nan)
     best = min(candidates, key=lambda sample: abs(sample.frame_time - asked))
-    return Sample(best.frame_time, best.value, best.expected, best.error)
+    return Sample(best.frame_time, best.value, best.expected, best.error, best.points)

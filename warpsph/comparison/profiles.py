@@ -16,10 +16,11 @@ INTERPOLATED_FROM = ("density", "mass", "volume")
 """Fields that the interpolation needs beside positions and the field itself."""
 
 
-def profile_values(reference: ProfileReference, scene: Scene, frame: Frame) -> tuple[np.ndarray, np.ndarray]:
-    """Interpolated values and those of the table, each of shape (points,); a dry point is no number."""
+def profile_values(reference: ProfileReference, scene: Scene, frame: Frame) -> np.ndarray:
+    """Coordinates [m], interpolated values and those of the table, shape (3, points); a dry point is no number."""
     position, expected = read_profile(reference, scene)
-    return np.array([_value_at(float(x), reference, scene, frame) for x in position]), expected
+    values = np.array([_value_at(float(x), reference, scene, frame) for x in position])
+    return np.stack([position, values, expected])
 
 
 def read_profile(reference: ProfileReference, scene: Scene) -> tuple[np.ndarray, np.ndarray]:

@@ -15,18 +15,29 @@ History = Mapping[str, np.ndarray]
 """Probe columns by name, each of shape (samples,), with the times [s] under `time[s]`."""
 
 
+Points = tuple[tuple[float, float, float], ...]
+"""Coordinate along a line [m], value there, and reference value there, of each point of a profile."""
+
+
 @dataclass(frozen=True)
 class Sample:
-    """A value against its reference at one time [s]; the error is in the unit of the row it belongs to."""
+    """A value against its reference at one time [s]; the error is in the unit of the row it belongs to.
+
+    `points` are those of a profile, which the other numbers are the norm of.
+    """
 
     time: float
     value: float
     reference: float
     error: float
+    points: Points = ()
 
-    def as_record(self) -> dict[str, float | None]:
-        """The sample for JSON."""
-        return {key: finite_or_none(number) for key, number in vars(self).items()}
+    def as_record(self) -> dict[str, Any]:
+        """The sample for JSON; `points` appear where there are some."""
+        numbers = ("time", "value", "reference", "error")
+        record: dict[str, Any] = {key: finite_or_none(getattr(self, key)) for key in numbers}
+        points = [[finite_or_none(number) for number in point] for point in self.points]
+        return record | ({"points": points} if points else {})
 
 
 @dataclass(frozen=True)
