@@ -23,6 +23,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("warpsph.physics", "warpsph.comparison"),
     ("warpsph.solver", "warpsph.rendering"),
     ("warpsph.validation",),
+    ("warpsph.report",),
     ("warpsph.cli",),
 )
 """From the bottom to the top; a module belongs to the longest name that it begins with."""

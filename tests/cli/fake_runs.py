@@ -70,6 +70,15 @@ REFERENCE_ROW = {
 }
 
 
+LEDGER = {
+    "mass": 1000.0,
+    "kinetic_energy": 0.0,
+    "potential_energy": 4905.0,
+    "momentum": [0.0, 0.0],
+    "energies": {},
+}
+
+
 def summary(*rows: dict[str, Any]) -> dict[str, Any]:
     """The summary of a run that went well."""
     return {
@@ -82,6 +91,8 @@ def summary(*rows: dict[str, Any]) -> dict[str, Any]:
         "wall_s": 75.0,
         "particle_steps_per_second": 2.5e6,
         "steps": {"count": 100, "sub_steps": 0, "mean_s": 2e-4, "limited_by": {"acoustic": 97, "frame": 3}},
+        "versions": {"warpsph": "0.1.0"},
+        "ledger": {"start": LEDGER, "end": LEDGER},
         "warnings": ["the scene [of a test] is tiny"],
         "references": list(rows or (REFERENCE_ROW,)),
     }

@@ -94,6 +94,13 @@ def test_halving_of_power_laws() -> None:
     assert cost.range == pytest.approx((2.0**1.5, 2.0**1.5))
 
 
+def test_no_order_above_that_of_the_scheme_is_relied_on() -> None:
+    steep, formal = halving_cost(power_law(6.0, 3.0)), halving_cost(power_law(2.0, 3.0))
+    assert steep is not None
+    assert formal is not None
+    assert steep.factor == pytest.approx(formal.factor)
+
+
 def test_two_resolutions_give_no_range() -> None:
     cost = halving_cost(power_law(1.0, 3.0, count=2))
     assert cost is not None

@@ -43,6 +43,10 @@ Compare = Annotated[
     ),
 ]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object a line instead of a table.")]
+Report = Annotated[
+    bool,
+    typer.Option("--report", help="Write report.html and its pictures too; they need the extra `render`."),
+]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of all runs.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
 
@@ -54,6 +58,7 @@ def validate(
     resolutions: Resolutions = None,
     compare: Compare = None,
     json_lines: Json = False,
+    report: Report = False,
     out: Out = Path("out/validation"),
     device: Device = None,
     threads: Threads = None,
@@ -63,8 +68,9 @@ def validate(
 ) -> ExitCode:
     """Run scenes over their resolutions and compare them with their references.
 
-    Progress goes to stderr, results to stdout. Exit code 0 if every bound holds, 1 if one does not or a run
-    fails, 2 if a scene or the request is wrong, which is found before the first run.
+    Progress goes to stderr, results to stdout, and all figures also to report.json in the directory of the runs. Exit
+    code 0 if every bound holds, 1 if one does not or a run fails, 2 if a scene or the request is wrong, which is
+    found before the first run.
     """
     from warpsph.cli.consoles import plain_console
     from warpsph.cli.tables import validation_table
@@ -89,6 +95,8 @@ def validate(
     finally:
         if results and not json_lines:
             plain_console().print(validation_table(results))
+        if results:
+            write_report(results, out, progress, with_page=report)
     return ExitCode.OK if all(result.holds for result in results) else ExitCode.FAILED
 
 
@@ -96,6 +104,22 @@ def in_words(case: Case) -> str:
     """Which case it is, for the progress."""
     options = f" with {', '.join(case.options)}" if case.options else ""
     return f"{case.scene.name} at spacing {case.scene.spacing:g} m{options}"
+
+
+def write_report(
+    results: Sequence[CaseResult], directory: Path, console: Console, *, with_page: bool
+) -> None:
+    """Write what was found beside the runs, and say where it is and what is missing."""
+    from warpsph.report.content import scene_reports
+    from warpsph.report.write import write_page, write_record
+
+    reports = scene_reports(results)
+    console.print(f"report {write_record(reports, directory)}", soft_wrap=True)
+    if with_page:
+        path, notice = write_page(reports, directory)
+        console.print(f"report {path}", soft_wrap=True)
+        if notice:
+            console.print(notice, soft_wrap=True)
 
 
 def planned_cases(

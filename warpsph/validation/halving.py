@@ -7,6 +7,9 @@ from dataclasses import dataclass
 
 from warpsph.validation.study import Study
 
+FORMAL_ORDER = 2.0
+"""Of smoothing and of the time steps."""
+
 
 @dataclass(frozen=True)
 class HalvingCost:
@@ -22,7 +25,8 @@ class HalvingCost:
 def halving_cost(study: Study) -> HalvingCost | None:
     """2^(s / p) of error ~ spacing^p and wall time ~ spacing^-s; None where the error does not clearly fall.
 
-    It falls clearly if the order exceeds its own standard error.
+    It falls clearly if the order exceeds its own standard error. Orders above that of the scheme come from errors that
+    change their sign and promise nothing, so that p is at most 2 (Eca & Hoekstra 2014, section 3).
     """
     order, cost = study.order, study.cost_order
     if order is None or cost is None or cost.order >= 0.0:
@@ -37,5 +41,5 @@ def halving_cost(study: Study) -> HalvingCost | None:
 
 
 def _factor(cost_exponent: float, order: float) -> float:
-    exponent = cost_exponent / order
+    exponent = cost_exponent / min(order, FORMAL_ORDER)
     return 2.0**exponent if exponent < 1000.0 else math.inf

@@ -44,11 +44,12 @@ class Case:
 
 @dataclass(frozen=True)
 class CaseResult:
-    """The rows of a case, one a reference; `failure` says why the run did not come to its end."""
+    """The rows of a case, one a reference, and the summary of its run; `failure` says why it did not reach its end."""
 
     case: Case
     rows: tuple[Mapping[str, Any], ...]
     failure: str | None = None
+    summary: Mapping[str, Any] | None = None
 
     @property
     def holds(self) -> bool:
@@ -108,7 +109,8 @@ def run_case(case: Case, directory: Path, run_scene: RunScene) -> CaseResult:
             case, tuple(_row_of_failed_run(case, name) for name in case.scene.references), str(error)
         )
     facts = _facts(summary)
-    return CaseResult(case, tuple(_row(case, comparison, facts) for comparison in summary["references"]))
+    rows = tuple(_row(case, comparison, facts) for comparison in summary["references"])
+    return CaseResult(case, rows, summary=summary)
 
 
 def _spacings(scene: Scene, *, quick: bool) -> Sequence[float]:

@@ -6,11 +6,12 @@ import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, Literal
 
 from warpsph.validation.order import ObservedOrder, observed_order
 
 Row = Mapping[str, Any]
+Cost = Literal["wall_seconds", "particle_steps"]
 
 
 @dataclass(frozen=True)
@@ -99,6 +100,13 @@ def efficient(costs: Sequence[float | None], errors: Sequence[float | None]) -> 
         return any(c <= cost and e <= error and (c, e) != (cost, error) for c, e in known)
 
     return [c is not None and e is not None and not beaten(c, e) for c, e in pairs]
+
+
+def on_front(studies: Sequence[Study], cost: Cost) -> list[list[bool]]:
+    """For each point of studies of the same quantity whether it is on their common efficient front."""
+    points = [point for study in studies for point in study.points]
+    flags = iter(efficient([getattr(point, cost) for point in points], [point.quoted for point in points]))
+    return [[next(flags) for _ in study.points] for study in studies]
 
 
 def _identity(row: Row) -> tuple[str, tuple[tuple[str, str], ...], str]:

@@ -1,0 +1,1 @@
+"""Reports of validations: error against cost, curves over references, conservation, in words and pictures."""

@@ -1,0 +1,222 @@
+"""The report as one HTML file that needs nothing else: no style sheets, scripts, fonts or pictures from elsewhere."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from html import escape
+from typing import Any
+
+from warpsph.report.content import SceneReport
+from warpsph.report.ledger import entries_of
+from warpsph.report.words import (
+    machine,
+    number,
+    order_in_words,
+    percent,
+    quantity_in_words,
+    quoted_error,
+    wall_time,
+)
+from warpsph.validation.halving import halving_cost
+from warpsph.validation.runner import CaseResult
+from warpsph.validation.study import Study, options_in_words
+
+Pictures = Mapping[str, Mapping[str, bytes]]
+"""PNGs by scene and by what they show."""
+
+STYLE = """
+body { font: 15px/1.5 system-ui, sans-serif; color: #2b2f36; max-width: 1100px; margin: 2em auto; padding: 0 1em; }
+h1, h2, h3 { font-weight: 600; line-height: 1.2; }
+h2 { margin-top: 2.5em; border-top: 1px solid #b9bec6; padding-top: 1em; }
+h3 { margin: 1.6em 0 0.4em; font-size: 1em; }
+.scroll { overflow-x: auto; }
+table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums; }
+th, td { text-align: left; padding: 0.25em 1.2em 0.25em 0; vertical-align: top; border-bottom: 1px solid #e6e8eb; }
+th { font-weight: 600; border-bottom-color: #b9bec6; }
+img { max-width: 100%; height: auto; display: block; margin: 0.8em 0; }
+.sentence { font-size: 1.1em; }
+.no { color: #b3261e; font-weight: 600; }
+.yes { color: #1b7f4b; }
+.quiet { color: #5f6670; }
+"""
+
+_ERRORS = (
+    "spacing [m]",
+    "particles",
+    "quantity",
+    "value",
+    "reference",
+    "error",
+    "bound",
+    "holds",
+    "wall time",
+    "particle-steps [million]",
+)
+_STUDIES = ("quantity", "observed order", "half the error costs")
+_LEDGER = ("total", "unit", "start", "end", "change")
+_VERDICTS = {True: ("yes", "yes"), False: ("no", "NO"), None: ("quiet", "-")}
+
+
+def page(reports: Sequence[SceneReport], pictures: Pictures, notice: str | None = None) -> str:
+    """The whole page; `notice` says what is missing and why."""
+    body = "\n".join(
+        [
+            "<h1>Validation report</h1>",
+            f"<p class='quiet'>{escape(_provenance(reports))}</p>",
+            *([f"<p class='no'>{escape(notice)}</p>"] if notice else []),
+            _table(("scene", "how good, for how much", "bounds kept"), map(_overview, reports)),
+            *(_section(report, pictures.get(report.scene.name, {})) for report in reports),
+        ]
+    )
+    head = f"<meta charset='utf-8'><title>Validation report</title><style>{STYLE}</style>"
+    return f"<!DOCTYPE html>\n<html lang='en'><head>{head}</head>\n<body>\n{body}\n</body></html>\n"
+
+
+def _overview(report: SceneReport) -> list[str]:
+    name = escape(report.scene.name)
+    return [f"<a href='#{name}'>{name}</a>", escape(report.sentence), _kept(report)]
+
+
+def _kept(report: SceneReport) -> str:
+    """How many bounds of all runs hold."""
+    verdicts = [row["holds"] for row in report.rows if row["holds"] is not None]
+    kind = "yes" if all(result.holds for result in report.results) else "no"
+    return f"<span class='{kind}'>{sum(verdicts)} of {len(verdicts)}</span>"
+
+
+def _section(report: SceneReport, pictures: Mapping[str, bytes]) -> str:
+    name = escape(report.scene.name)
+    return "\n".join(
+        [
+            f"<h2 id='{name}'>{name}</h2>",
+            f"<p class='sentence'>{escape(report.sentence)}</p>",
+            f"<p>{escape(report.scene.description)}</p>",
+            *(_image(title, data) for title, data in pictures.items()),
+            "<h3>Errors and their cost</h3>",
+            _error_table(report),
+            *_study_table(report),
+            *_failures(report),
+            *(part for result in _with_ledger(report.results) for part in _conservation(result)),
+            *_warnings(report.results),
+            "<h3>References</h3>",
+            _list(_sources(report)),
+        ]
+    )
+
+
+def _image(title: str, data: bytes) -> str:
+    return f"<img alt='{escape(title)}' src='data:image/png;base64,{base64.b64encode(data).decode()}'>"
+
+
+def _error_table(report: SceneReport) -> str:
+    compared = ("options",) if report.compares_options else ()
+    rows = ([*map(escape, _options(row, bool(compared))), *_error_cells(row)] for row in report.rows)
+    return _table((*compared, *_ERRORS), rows)
+
+
+def _options(row: Mapping[str, Any], compared: bool) -> list[str]:
+    return [options_in_words(row.get("options"))] if compared else []
+
+
+def _error_cells(row: Mapping[str, Any]) -> list[str]:
+    steps, particles, seconds = row["steps"], row["particles"], row["wall_seconds"]
+    bound = None if row.get("error_unit") else row["bound"]
+    return [
+        number(row["resolution"]),
+        number(particles, 8),
+        escape(quantity_in_words(row["quantity"])),
+        number(row["value"]),
+        number(row["reference"]),
+        escape(quoted_error(row)),
+        "-" if bound is None else percent(bound),
+        _verdict(row["holds"]),
+        "-" if seconds is None else wall_time(seconds),
+        "-" if steps is None or particles is None else number(steps * particles / 1e6, 3),
+    ]
+
+
+def _study_table(report: SceneReport) -> list[str]:
+    studies = [study for own in report.studies.values() for study in own if study.order is not None]
+    if not studies:
+        return []
+    compared = ("options",) if report.compares_options else ()
+    rows = ([*([escape(study.label)] if compared else []), *_study_cells(study)] for study in studies)
+    return ["<h3>Convergence</h3>", _table((*compared, *_STUDIES), rows)]
+
+
+def _study_cells(study: Study) -> list[str]:
+    order, halving = study.order, halving_cost(study)
+    factor = "-" if halving is None else f"{number(halving.factor, 2)} times"
+    between = "" if halving is None or halving.range is None else f" ({_range(halving.range)})"
+    name = escape(quantity_in_words(study.quantity))
+    return [name, "-" if order is None else order_in_words(order), factor + between]
+
+
+def _range(ends: tuple[float, float]) -> str:
+    return " to ".join(number(end, 2) for end in ends)
+
+
+def _with_ledger(results: Sequence[CaseResult]) -> list[CaseResult]:
+    """The finest finished run of each choice of options."""
+    finished = {result.case.options: result for result in results if result.summary is not None}
+    return list(finished.values())
+
+
+def _conservation(result: CaseResult) -> Iterator[str]:
+    assert result.summary is not None
+    run = ", ".join([f"spacing {result.case.scene.spacing:g} m", *result.case.options])
+    yield f"<h3>Conservation, {escape(run)}</h3>"
+    yield _table(
+        _LEDGER,
+        (
+            [entry.name, entry.unit, *(number(value, 5) for value in (entry.start, entry.end, entry.change))]
+            for entry in entries_of(result.summary)
+        ),
+    )
+
+
+def _failures(report: SceneReport) -> Iterator[str]:
+    for result in report.results:
+        if result.failure:
+            yield f"<p class='no'>{escape(str(result.case.directory))}: {escape(result.failure)}</p>"
+
+
+def _warnings(results: Sequence[CaseResult]) -> list[str]:
+    warnings = dict.fromkeys(
+        f"{result.case.directory}: {warning}"
+        for result in results
+        for warning in (result.summary or {}).get("warnings", ())
+    )
+    return ["<h3>Warnings</h3>", _list(warnings)] if warnings else []
+
+
+def _sources(report: SceneReport) -> Iterator[str]:
+    for name, reference in report.scene.references.items():
+        uncertainty = getattr(reference, "uncertainty", 0.0)
+        known = f", known within {percent(uncertainty)}" if uncertainty else ""
+        yield f"{quantity_in_words(name)}: {reference.source}{known}"
+
+
+def _provenance(reports: Sequence[SceneReport]) -> str:
+    """Devices, threads and versions of all runs, each once."""
+    summaries = [r.summary for report in reports for r in report.results if r.summary is not None]
+    machines = dict.fromkeys(f"{s['device']}, {machine(s['device'], s['threads'])}" for s in summaries)
+    versions = dict.fromkeys(f"{k} {v}" for s in summaries for k, v in s["versions"].items())
+    return f"Computed on {'; '.join(machines) or 'nothing'}. Versions: {', '.join(versions) or 'unknown'}."
+
+
+def _verdict(holds: bool | None) -> str:
+    kind, word = _VERDICTS[holds]
+    return f"<span class='{kind}'>{word}</span>"
+
+
+def _list(items: Iterable[str]) -> str:
+    return f"<ul>{''.join(f'<li>{escape(item)}</li>' for item in items)}</ul>"
+
+
+def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """A table of cells that are HTML already."""
+    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
+    body = "\n".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
+    return f"<div class='scroll'><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>"
