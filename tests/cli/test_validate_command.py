@@ -116,6 +116,28 @@ def test_diverged_run_fails_and_the_others_still_run(
     assert [json.loads(line)["holds"] for line in result.stdout.splitlines()] == [False, True]
 
 
+def test_resume_runs_only_what_is_not_there(warpsph: Command, scene_file: Path, tmp_path: Path) -> None:
+    request = ("validate", scene_file, "--json", "--out", tmp_path / "out")
+    first = warpsph(*request, "--resolutions", "0.5")
+    second = warpsph(*request, "--resolutions", "0.5,0.25", "--resume")
+    assert second.stdout.splitlines()[0] == first.stdout.strip()
+    assert len(second.stdout.splitlines()) == 2
+    assert second.stderr.count("kept") == 1
+    changed = warpsph(*request, "--resolutions", "0.5", "--resume", "--set", "time.cfl=0.1")
+    assert "kept" not in changed.stderr
+
+
+@pytest.mark.parametrize("state", ["interrupted", None])
+def test_resume_keeps_no_run_that_is_not_complete(
+    warpsph: Command, scene_file: Path, tmp_path: Path, state: str | None
+) -> None:
+    request = ("validate", scene_file, "--resolutions", "0.5", "--out", tmp_path / "out")
+    warpsph(*request)
+    summary = tmp_path / "out/tank/0.5/summary.json"
+    summary.write_text(json.dumps({"status": state}) if state else "{")
+    assert "kept" not in warpsph(*request, "--resume").stderr
+
+
 @pytest.mark.parametrize("spacings", ["coarse", "0.1,-1", "0.1,nan", ""])
 def test_wrong_resolutions_are_bad_input(warpsph: Command, scene_file: Path, spacings: str) -> None:
     result = warpsph("validate", scene_file, "--resolutions", spacings)

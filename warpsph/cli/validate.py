@@ -47,6 +47,12 @@ Report = Annotated[
     bool,
     typer.Option("--report", help="Write report.html and its pictures too; they need the extra `render`."),
 ]
+Resume = Annotated[
+    bool,
+    typer.Option(
+        "--resume", help="Take complete runs of the same scenes from the directory, run the others."
+    ),
+]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of all runs.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
 
@@ -59,6 +65,7 @@ def validate(
     compare: Compare = None,
     json_lines: Json = False,
     report: Report = False,
+    resume: Resume = False,
     out: Out = Path("out/validation"),
     device: Device = None,
     threads: Threads = None,
@@ -87,7 +94,7 @@ def validate(
     try:
         for number, case in enumerate(cases, start=1):
             progress.print(f"{number}/{len(cases)} {in_words(case)}")
-            result = run_case(case, out, runner_with(progress, quiet, device, threads))
+            result = run_case(case, out, runner_with(progress, quiet, device, threads, resume=resume))
             result = judged(result, results, cases)
             results.append(result)
             if json_lines:
@@ -141,12 +148,19 @@ def planned_cases(
     )
 
 
-def runner_with(progress: Console, quiet: bool, device: str | None, threads: int | None) -> RunScene:
-    """A function that runs a scene into a directory and shows how it goes."""
+def runner_with(
+    progress: Console, quiet: bool, device: str | None, threads: int | None, *, resume: bool
+) -> RunScene:
+    """A function that runs a scene into a directory and shows how it goes, unless a kept run spares it."""
     from warpsph.cli.progress import reporter_for
     from warpsph.solver.run import run_scene
+    from warpsph.validation.kept import kept_summary
 
     def run(scene: Scene, directory: Path) -> Mapping[str, Any]:
+        kept = kept_summary(scene, directory) if resume else None
+        if kept is not None:
+            progress.print(f"kept {directory}", soft_wrap=True)
+            return kept
         with reporter_for(progress, quiet=quiet) as reporter:
             return run_scene(scene, directory, device=device, threads=threads, reporter=reporter)
 
