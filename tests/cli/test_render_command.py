@@ -27,7 +27,7 @@ def test_run_is_drawn(warpsph: Command, scene_file: Path, tmp_path: Path) -> Non
 def test_missing_extra_is_named_with_the_command_that_installs_it(
     warpsph: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("warpsph.cli.extras.find_spec", lambda module: None)
+    monkeypatch.setattr("warpsph.rendering.extra.find_spec", lambda module: None)
     result = warpsph("render", tmp_path)
     assert result.exit_code == 2
     assert 'pip install "warpsph[render]"' in result.stderr

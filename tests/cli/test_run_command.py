@@ -135,7 +135,7 @@ def test_scene_goes_to_its_own_directory_by_default(
 def test_rendering_without_its_extra_is_refused_before_the_run(
     warpsph: Command, scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr("warpsph.cli.extras.find_spec", lambda module: None)
+    monkeypatch.setattr("warpsph.rendering.extra.find_spec", lambda module: None)
     result = warpsph("run", scene_file, "--out", tmp_path / "run", "--render")
     assert result.exit_code == 2
     assert 'pip install "warpsph[render]"' in result.stderr

@@ -1,4 +1,4 @@
-"""The files of a report: strict JSON, a page that needs nothing else, pictures; and a report without Matplotlib."""
+"""The files of a report: strict JSON, a page that needs nothing else, pictures; and a report without the extra."""
 
 from __future__ import annotations
 
@@ -43,7 +43,12 @@ def sources(html: str) -> list[str]:
 def test_a_validation_leaves_record_page_and_pictures(scene_file: Path, tmp_path: Path) -> None:
     directory = tmp_path / "out"
     compare = "numerics.kernel=wendland_c2,cubic_spline"
-    assert validated(scene_file, directory, "--compare", compare, "--report").exit_code == 0
+    assert (
+        validated(
+            scene_file, directory, "--compare", compare, "--report", "--set", "output.usd=true"
+        ).exit_code
+        == 0
+    )
     (scene,) = json.loads((directory / "report.json").read_text(), parse_constant=pytest.fail)["scenes"]
     assert [run["options"]["numerics.kernel"] for run in scene["runs"]] == [
         "wendland_c2",
@@ -57,7 +62,7 @@ def test_a_validation_leaves_record_page_and_pictures(scene_file: Path, tmp_path
     assert scene["sentence"] in html
     inline = [base64.b64decode(s.partition(",")[2]) for s in sources(html) if s.startswith("data:image/png")]
     pictures = {path.name: path.read_bytes() for path in (directory / "tank").glob("*.png")}
-    assert pictures.keys() == {"errors_front.png", "curve_front.png"}
+    assert pictures.keys() == {"particles.png", "errors_front.png", "curve_front.png"}
     assert sorted(inline) == sorted(pictures.values())
     assert all(picture.startswith(PNG) for picture in inline)
 
@@ -77,10 +82,10 @@ def test_without_being_asked_nothing_is_drawn(
     assert (tmp_path / "out/report.json").is_file()
 
 
-def test_without_matplotlib_a_line_says_what_to_install(
+def test_without_the_extra_a_line_says_what_to_install(
     scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(write, "find_spec", lambda name: None)
+    monkeypatch.setattr("warpsph.rendering.extra.find_spec", lambda module: None)
     result = validated(scene_file, tmp_path / "out", "--report")
     assert result.exit_code == 0
     assert 'pip install "warpsph[render]"' in result.stderr

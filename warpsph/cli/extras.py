@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from importlib.util import find_spec
-
 from warpsph.cli.failures import BadInput
-
-RENDER_MODULES = ("matplotlib", "imageio_ffmpeg")
 
 
 def require_render_extra() -> None:
     """Raise BadInput with the command that installs what drawing needs, if it is not there."""
-    missing = [module for module in RENDER_MODULES if find_spec(module) is None]
+    from warpsph.rendering.extra import what_to_install
+
+    missing = what_to_install()
     if missing:
-        raise BadInput(f'drawing needs {" and ".join(missing)}: pip install "warpsph[render]"')
+        raise BadInput(f"drawing needs {missing}")

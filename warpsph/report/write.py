@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from importlib.util import find_spec
 from pathlib import Path
 
 from warpsph.output.atomic import write_atomically
 from warpsph.output.summary import write_summary
+from warpsph.rendering.extra import what_to_install
 from warpsph.report.content import SceneReport
 from warpsph.report.curves import charts_of
 from warpsph.report.page import page
 
 RECORD, PAGE = "report.json", "report.html"
-MISSING_PICTURES = 'no pictures: they need matplotlib, which pip install "warpsph[render]" installs'
 
 
 def write_record(reports: Sequence[SceneReport], directory: Path) -> Path:
@@ -26,12 +25,12 @@ def write_record(reports: Sequence[SceneReport], directory: Path) -> Path:
 def write_page(reports: Sequence[SceneReport], directory: Path) -> tuple[Path, str | None]:
     """Write report.html and its pictures, from the runs below the directory.
 
-    Returns its path, and what is missing in it where Matplotlib is not installed. Raises OutputError.
+    Returns its path, and what is missing in it where the extra `render` is not installed. Raises OutputError.
     """
-    drawable = find_spec("matplotlib") is not None
-    notice = None if drawable else MISSING_PICTURES
+    missing = what_to_install()
+    notice = f"no pictures: they need {missing}" if missing else None
     pictures = {
-        report.scene.name: dict(_pictures(report, directory)) if drawable else {} for report in reports
+        report.scene.name: {} if missing else dict(_pictures(report, directory)) for report in reports
     }
     path = directory / PAGE
     write_atomically(path, page(reports, pictures, notice).encode())
@@ -46,10 +45,17 @@ def _pictures(report: SceneReport, directory: Path) -> Iterator[tuple[str, bytes
 
 
 def _drawn(report: SceneReport, directory: Path) -> Iterator[tuple[str, str, bytes]]:
-    """File name, title and content: the errors, each quantity for itself if options are compared; then the curves."""
+    """File name, title and content: the particles, the errors, and the curves.
+
+    Where options are compared, each quantity has a picture of errors for itself.
+    """
     from warpsph.report.pictures import chart_picture, errors_picture
+    from warpsph.report.scene_picture import scene_picture
     from warpsph.report.words import quantity_in_words
 
+    particles = scene_picture(report.results, directory)
+    if particles is not None:
+        yield "particles", "the particles at the end", particles
     every = [study for studies in report.studies.values() for study in studies]
     groups = report.studies if report.compares_options else {"": every}
     for quantity, studies in groups.items():
