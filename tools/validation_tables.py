@@ -1,4 +1,4 @@
-"""Keep the record of validation runs, and write its tables in docs/validation.md and README.md.
+"""Keep the record of validation runs, and write its tables in docs/validation.md and README.md, and docs/gallery.md.
 
 warpsph validate --json > out/validation.jsonl
 python tools/validation_tables.py out/validation.jsonl
@@ -16,6 +16,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+import gallery
 import pages
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -138,12 +139,13 @@ def _read(path: Path) -> list[Row]:
 
 
 def main(results: Path | None) -> None:
-    """Take the JSON lines of a file into the record and write both tables."""
+    """Take the JSON lines of a file into the record, and write both tables and the gallery."""
     rows = merged(_read(RECORD), _read(results) if results else ())
     slim = [{key: value for key, value in row.items() if key not in ("samples", "source")} for row in rows]
     RECORD.write_text("".join(json.dumps(row) + "\n" for row in slim), encoding="utf-8")
     pages.rewrite(PAGE, BEGIN, END, table(rows))
     pages.rewrite(README, BEGIN, END, summary(rows))
+    gallery.main(None)
 
 
 if __name__ == "__main__":

@@ -7,20 +7,22 @@ from report_rows import row
 
 from warpsph.report.sentence import sentence_of
 from warpsph.report.words import machine, percent, quoted_error, wall_time
+from warpsph.validation.convergence import NOTE
 
 
 def test_error_price_and_cost_of_half_the_error() -> None:
     """Order 2 in the error, 3 in the cost: 2^(3/2) = 2.8."""
     rows = [row(0.2, 0.052, 5.0), row(0.1, 0.013, 40.0)]
     assert (
-        sentence_of(rows) == "Front within 1.3 % for 40 s on one thread; halving the error costs 2.8 times."
+        sentence_of(rows)
+        == "Front within 1.3 % for 40 s on one thread; halving the error takes 2.8 times the work."
     )
 
 
 def test_scatter_gives_a_range() -> None:
     """Order 3/2 +- 0.289 and cost order 3: 4 times, from 3.2 to 5.6."""
     rows = [row(1.0, 0.4, 1.0), row(0.5, 0.2, 8.0), row(0.25, 0.05, 64.0)]
-    assert sentence_of(rows).endswith("halving the error costs 4 times (3.2 to 5.6).")
+    assert sentence_of(rows).endswith("halving the error takes 4 times the work (3.2 to 5.6).")
 
 
 def test_it_speaks_of_the_worst_quantity_at_the_finest_resolution() -> None:
@@ -30,8 +32,8 @@ def test_it_speaks_of_the_worst_quantity_at_the_finest_resolution() -> None:
         row(0.1, 0.01, 40.0),
         row(0.1, 0.02, 40.0, quantity="wave_height"),
     ]
-    expected = "Wave height within 2 % and the other quantity closer, for 40 s on one thread; "
-    assert sentence_of(rows) == f"{expected}halving the error costs 8 times."
+    expected = "Wave height within 2 % and one more quantity closer, for 40 s on one thread; "
+    assert sentence_of(rows) == f"{expected}halving the error takes 8 times the work."
 
 
 def test_nothing_is_claimed_below_the_uncertainty_of_the_reference() -> None:
@@ -45,7 +47,7 @@ def test_nothing_is_claimed_below_the_uncertainty_of_the_reference() -> None:
     [
         ([row(0.1, 0.02)], "one resolution does not show"),
         ([row(0.2, 0.02, 5.0), row(0.1, 0.03)], "the error does not clearly fall"),
-        ([row(0.2, 0.0201, 5.0), row(0.1, 0.02)], "costs more than 1000 times"),
+        ([row(0.2, 0.0201, 5.0), row(0.1, 0.02)], "takes more than 1000 times the work"),
     ],
 )
 def test_it_says_why_there_is_no_price(rows: list[dict[str, object]], told: str) -> None:
@@ -73,7 +75,23 @@ def test_limits_alone() -> None:
         row(0.1, 0.0, holds=True, quantity="a", **limit),
         row(0.1, 0.0, holds=True, quantity="b", **limit),
     ]
-    assert sentence_of(rows) == "2 of 2 limits kept for 40 s on one thread."
+    assert sentence_of(rows) == "All 2 limits kept for 40 s on one thread."
+
+
+def test_a_change_with_the_resolution_is_no_error_against_a_reference() -> None:
+    rows = [row(0.2, None, bound=None, holds=None), row(0.1, 0.03, note=NOTE)]
+    assert sentence_of(rows) == "Front changed by 3 % in the last refinement for 40 s on one thread."
+
+
+def test_bounded_quantities_come_first_and_larger_errors_are_named() -> None:
+    free = {"quantity": "experiment", "bound": None, "holds": None}
+    rows = [row(0.2, 0.02, 5.0), row(0.2, 0.2, 5.0, **free), row(0.1, 0.005), row(0.1, 0.22, **free)]
+    expected = "Front within 0.5 % for 40 s on one thread; halving the error takes 2.8 times the work; "
+    assert sentence_of(rows) == f"{expected}without a bound: experiment 22 %."
+
+
+def test_what_breaks_its_bound_is_not_within_anything() -> None:
+    assert sentence_of([row(0.1, 0.3, bound=0.1, holds=False)]).startswith("Front off by 30 % for 40 s")
 
 
 def test_a_run_that_diverged() -> None:

@@ -7,12 +7,14 @@ from typing import Any
 
 import pytest
 
+from warpsph.validation.convergence import NOTE
 from warpsph.validation.halving import halving_cost
 from warpsph.validation.study import Study, efficient, studies_of
 
 
 def row(spacing: float, error: float | None, wall: float | None = 1.0, **other: Any) -> dict[str, Any]:
-    fixed = {"scene": "tank", "quantity": "front", "steps": 10, "particles": 300}
+    steps = None if wall is None else round(10 * wall)
+    fixed = {"scene": "tank", "quantity": "front", "steps": steps, "particles": 300}
     return {**fixed, "resolution": spacing, "error": error, "wall_seconds": wall, **other}
 
 
@@ -45,13 +47,15 @@ def test_rows_are_grouped_by_scene_quantity_and_options() -> None:
     ]
 
 
-def test_limits_make_no_study() -> None:
+def test_limits_changes_and_reported_figures_make_no_study() -> None:
     assert studies_of([row(0.1, 0.0, error_unit="kg/s")]) == ()
+    assert studies_of([row(0.2, None), row(0.1, 0.03, note=NOTE)]) == ()
 
 
 def test_particle_steps_are_particles_times_steps() -> None:
     assert study(row(0.1, 0.1)).finest.particle_steps == 3000.0
-    assert study(row(0.1, None, None, steps=None, particles=None)).finest.particle_steps is None
+    failed = row(0.1, None, None, steps=None, particles=None)
+    assert study(row(0.2, 0.1), failed).finest.particle_steps is None
 
 
 def test_errors_are_quoted_at_the_uncertainty_of_the_reference_at_least() -> None:

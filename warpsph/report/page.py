@@ -53,7 +53,7 @@ _ERRORS = (
     "wall time",
     "particle-steps [million]",
 )
-_STUDIES = ("quantity", "observed order", "half the error costs")
+_STUDIES = ("quantity", "observed order", "half the error takes")
 _LEDGER = ("total", "unit", "start", "end", "change")
 _VERDICTS = {True: ("yes", "yes"), False: ("no", "NO"), None: ("quiet", "-")}
 
@@ -125,7 +125,7 @@ def _error_cells(row: Mapping[str, Any]) -> list[str]:
     return [
         number(row["resolution"]),
         number(particles, 8),
-        escape(quantity_in_words(row["quantity"])),
+        escape(quantity_in_words(row["quantity"])) + _remark(row),
         number(row["value"]),
         number(row["reference"]),
         escape(quoted_error(row)),
@@ -134,6 +134,13 @@ def _error_cells(row: Mapping[str, Any]) -> list[str]:
         "-" if seconds is None else wall_time(seconds),
         "-" if steps is None or particles is None else number(steps * particles / 1e6, 3),
     ]
+
+
+def _remark(row: Mapping[str, Any]) -> str:
+    """The fitted lag of a row and what is doubtful about it."""
+    lag = f"after a lag of {number(row['lag'], 3)} s" if row.get("lag") else None
+    told = "; ".join(filter(None, (lag, row.get("note"))))
+    return f" <span class='quiet'>({escape(told)})</span>" if told else ""
 
 
 def _study_table(report: SceneReport) -> list[str]:
@@ -147,7 +154,7 @@ def _study_table(report: SceneReport) -> list[str]:
 
 def _study_cells(study: Study) -> list[str]:
     order, halving = study.order, halving_cost(study)
-    factor = "-" if halving is None else f"{number(halving.factor, 2)} times"
+    factor = "-" if halving is None else f"{number(halving.factor, 2)} times the work"
     between = "" if halving is None or halving.range is None else f" ({_range(halving.range)})"
     name = escape(quantity_in_words(study.quantity))
     return [name, "-" if order is None else order_in_words(order), factor + between]

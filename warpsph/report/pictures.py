@@ -157,7 +157,7 @@ def _error_axes(panels: Sequence[Axes], points: Sequence[Point]) -> None:
     _logarithmic(panels[0], "y", [_percent(point) for point in points])
     spacings = sorted({point.resolution for point in points})
     if len(spacings) <= 4:
-        panels[0].set_xticks(spacings, [f"{spacing:.3g}" for spacing in spacings])
+        panels[0].set_xticks(spacings, [f"{spacing:.4g}" for spacing in spacings])
 
 
 def _logarithmic(axes: Axes, direction: Literal["x", "y"], values: Sequence[float]) -> None:

@@ -7,6 +7,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from warpsph.report.words import machine, percent, quantity_in_words, quoted_error, wall_time
+from warpsph.validation.convergence import is_change
 from warpsph.validation.halving import halving_cost
 from warpsph.validation.study import Study, options_in_words, studies_of
 
@@ -19,20 +20,41 @@ LARGEST_FACTOR = 1000.0
 def sentence_of(rows: Sequence[Row]) -> str:
     """The sentence of one scene from all its rows.
 
-    It speaks of the finest resolution and of the quantity with the largest error there; where options are compared, of
-    the choice with which that error is smallest. What breaks a bound is always named.
+    It speaks of the finest resolution and of the bounded quantity with the largest error there; where options are
+    compared, of the choice with which that error is smallest. What breaks a bound is always named, and so is what has
+    no bound and a larger error.
     """
     choices = _by_options(rows)
-    best = min(choices, key=lambda own: _rank(studies_of(own)))
+    best = min(choices, key=_rank)
     preamble = f"with {options_in_words(best[0]['options'])}: " if len(choices) > 1 else ""
-    text = "; ".join([preamble + _achieved(best), *_price(best), *_broken(_finest(best))])
+    finest, worst = _finest(best), worst_study(best)
+    clauses = [_achieved(finest, worst, best), *_price(worst), *_larger(finest, worst), *_broken(finest)]
+    text = preamble + "; ".join(clauses)
     return f"{text[0].upper()}{text[1:]}."
 
 
-def worst_study(studies: Sequence[Study]) -> Study | None:
-    """The study with the largest quoted error at its finest resolution; None where none has an error there."""
-    known = [study for study in studies if study.finest.quoted is not None]
-    return max(known, key=lambda study: study.finest.quoted or 0.0, default=None)
+def worst_study(rows: Sequence[Row]) -> Study | None:
+    """The study with the largest quoted error at the finest resolution, of the bounded quantities if there are any.
+
+    None if no quantity has an error there.
+    """
+    known = _compared(rows)
+    bounded = [study for study in known if study.quantity in _bounded(_finest(rows))]
+    return max(bounded or known, key=_error, default=None)
+
+
+def _compared(rows: Sequence[Row]) -> list[Study]:
+    """The studies that reach down to the finest resolution."""
+    finest = min(row["resolution"] for row in rows)
+    return [s for s in studies_of(rows) if s.finest.resolution == finest and s.finest.quoted is not None]
+
+
+def _bounded(finest: Sequence[Row]) -> set[str]:
+    return {row["quantity"] for row in finest if row["bound"] is not None}
+
+
+def _error(study: Study) -> float:
+    return study.finest.quoted or 0.0
 
 
 def _by_options(rows: Sequence[Row]) -> list[list[Row]]:
@@ -47,29 +69,29 @@ def _finest(rows: Sequence[Row]) -> list[Row]:
     return [row for row in rows if row["resolution"] == finest]
 
 
-def _rank(studies: Sequence[Study]) -> tuple[float, float]:
-    """Largest error and cost at the finest resolution; runs without an error come last."""
-    worst = worst_study(studies)
-    if worst is None or any(study.finest.wall_seconds is None for study in studies):
-        return math.inf, math.inf
-    return worst.finest.quoted or 0.0, worst.finest.wall_seconds or 0.0
-
-
-def _achieved(rows: Sequence[Row]) -> str:
-    finest = _finest(rows)
-    cost = finest[0]["wall_seconds"]
-    if cost is None:
-        return f"the run at spacing {finest[0]['resolution']:g} m did not come to its end"
-    price = f"for {wall_time(cost)} on {machine(finest[0]['device'], finest[0]['threads'])}"
-    studies = studies_of(rows)
-    worst = worst_study(studies)
+def _rank(rows: Sequence[Row]) -> tuple[float, float]:
+    """Largest error and cost at the finest resolution; what has none comes last."""
+    worst = worst_study(rows)
     if worst is None:
-        return f"{_limits(finest)} {price}"
-    return f"{_within(worst)}{_others(len(studies) - 1)} {price}"
+        return math.inf, math.inf
+    return _error(worst), worst.finest.wall_seconds or math.inf
 
 
-def _within(study: Study) -> str:
-    text = f"{quantity_in_words(study.quantity)} within {percent(study.finest.quoted or 0.0)}"
+def _achieved(finest: Sequence[Row], worst: Study | None, rows: Sequence[Row]) -> str:
+    seconds = finest[0]["wall_seconds"]
+    if seconds is None:
+        return f"the run at spacing {finest[0]['resolution']:g} m did not come to its end"
+    price = f"for {wall_time(seconds)} on {machine(finest[0]['device'], finest[0]['threads'])}"
+    if worst is None:
+        return f"{_without_errors(finest)} {price}"
+    closer = sum(_error(study) <= _error(worst) for study in _compared(rows)) - 1
+    return f"{_within(worst, finest)}{_others(closer)} {price}"
+
+
+def _within(study: Study, finest: Sequence[Row]) -> str:
+    holds = next(row["holds"] for row in finest if row["quantity"] == study.quantity)
+    relation = "off by" if holds is False else "within"
+    text = f"{quantity_in_words(study.quantity)} {relation} {percent(_error(study))}"
     return f"{text}, as close as the reference is known," if study.finest.at_uncertainty else text
 
 
@@ -78,39 +100,46 @@ def _others(count: int) -> str:
         case 0:
             return ""
         case 1:
-            return " and the other quantity closer,"
+            return " and one more quantity closer,"
         case _:
-            return f" and the other {count} quantities closer,"
+            return f" and {count} more quantities closer,"
 
 
-def _limits(rows: Sequence[Row]) -> str:
-    verdicts = [row["holds"] for row in rows if row.get("error_unit")]
-    if not verdicts:
-        return "no figure that could be compared"
-    return f"{sum(verdicts)} of {len(verdicts)} limits kept"
+def _without_errors(finest: Sequence[Row]) -> str:
+    """What there is to say where nothing has an error against a reference."""
+    changes = [row for row in finest if is_change(row) and row["error"] is not None]
+    if changes:
+        worst = max(changes, key=lambda row: row["error"])
+        return f"{quantity_in_words(worst['quantity'])} changed by {percent(worst['error'])} in the last refinement"
+    kept = [row["holds"] for row in finest if row.get("error_unit")]
+    match len(kept):
+        case 0:
+            return "no figure that could be compared"
+        case 1:
+            return "the one limit kept" if kept[0] else "the one limit broken"
+        case count:
+            return f"all {count} limits kept" if all(kept) else f"{sum(kept)} of {count} limits kept"
 
 
-def _price(rows: Sequence[Row]) -> Iterator[str]:
-    """What halving the error costs, or why that is not known."""
-    worst = worst_study(studies_of(rows))
+def _price(worst: Study | None) -> Iterator[str]:
+    """What halving the error takes, or why that is not known."""
     if worst is None or worst.finest.at_uncertainty or not worst.finest.quoted:
         return
     if len(worst.points) < 2:
-        yield "one resolution does not show what halving the error costs"
+        yield "one resolution does not show what halving the error takes"
         return
     cost = halving_cost(worst)
     if cost is None:
         yield "the error does not clearly fall with the resolution"
-    elif cost.factor > LARGEST_FACTOR:
-        yield f"halving the error costs more than {LARGEST_FACTOR:.0f} times"
     else:
-        yield f"halving the error costs {_times(cost.factor)} times{_range(cost.range)}"
+        yield f"halving the error takes {_times(cost.factor)} times the work{_range(cost.range)}"
 
 
 def _times(factor: float) -> str:
+    """Two significant digits without an exponent."""
     if factor > LARGEST_FACTOR:
         return f"more than {LARGEST_FACTOR:.0f}"
-    return f"{factor:.2g}" if factor < 99.5 else f"{factor:.0f}"
+    return f"{float(f'{factor:.2g}'):g}"
 
 
 def _range(factors: tuple[float, float] | None) -> str:
@@ -118,8 +147,18 @@ def _range(factors: tuple[float, float] | None) -> str:
     return f" ({ends[0]} to {ends[1]})" if len(set(ends)) > 1 else ""
 
 
-def _broken(rows: Sequence[Row]) -> Iterator[str]:
-    failing = [row for row in rows if row["holds"] is False]
+def _larger(finest: Sequence[Row], worst: Study | None) -> Iterator[str]:
+    """Errors of quantities without a bound that exceed the one that the sentence speaks of."""
+    if worst is None:
+        return
+    larger = [s for s in studies_of(finest) if s.finest.quoted is not None and _error(s) > _error(worst)]
+    if larger:
+        named = ", ".join(f"{quantity_in_words(s.quantity)} {percent(_error(s))}" for s in larger)
+        yield f"without a bound: {named}"
+
+
+def _broken(finest: Sequence[Row]) -> Iterator[str]:
+    failing = [row for row in finest if row["holds"] is False]
     broken = [_excess(row) for row in failing if row["error"] is not None]
     missing = [quantity_in_words(row["quantity"]) for row in failing if row["error"] is None]
     if broken:

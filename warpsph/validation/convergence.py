@@ -9,6 +9,13 @@ from typing import Any
 from warpsph.scene.references import FeatureReference
 from warpsph.validation.runner import Case, CaseResult
 
+NOTE = "the reference is the next coarser resolution"
+
+
+def is_change(row: Mapping[str, Any]) -> bool:
+    """Whether the error of a row is a change with the resolution, and not one against a reference."""
+    return row.get("note") == NOTE
+
 
 def judged(result: CaseResult, earlier: Sequence[CaseResult], cases: Sequence[Case]) -> CaseResult:
     """The result of the finest case of a scene, with its figures held against those of the next coarser case with the
@@ -32,4 +39,4 @@ def _row(case: Case, row: Mapping[str, Any], coarser: float | None) -> Mapping[s
     error = None if not coarser or row["value"] is None else abs(row["value"] / coarser - 1.0)
     holds = error is not None and error <= reference.convergence
     verdict = {"reference": coarser, "error": error, "bound": reference.convergence, "holds": holds}
-    return {**row, **verdict, "note": "the reference is the next coarser resolution"}
+    return {**row, **verdict, "note": NOTE}

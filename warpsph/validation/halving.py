@@ -1,4 +1,4 @@
-"""What half the error would cost, from how error and wall time have gone with the resolution."""
+"""What half the error would cost, from how error and particle-steps have gone with the resolution."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ FORMAL_ORDER = 2.0
 
 @dataclass(frozen=True)
 class HalvingCost:
-    """Factor in wall time that halves the error, and its range within one standard error of the observed order.
+    """Factor in particle-steps that halves the error, and its range within one standard error of the observed order.
 
     `range` is None where two resolutions leave nothing to judge by.
     """
@@ -23,7 +23,7 @@ class HalvingCost:
 
 
 def halving_cost(study: Study) -> HalvingCost | None:
-    """2^(s / p) of error ~ spacing^p and wall time ~ spacing^-s; None where the error does not clearly fall.
+    """2^(s / p) of error ~ spacing^p and particle-steps ~ spacing^-s; None where the error does not clearly fall.
 
     It falls clearly if the order exceeds its own standard error. Orders above that of the scheme come from errors that
     change their sign and promise nothing, so that p is at most 2 (Eca & Hoekstra 2014, section 3).

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
+from warpsph.validation.convergence import is_change
 from warpsph.validation.order import ObservedOrder, observed_order
 
 Row = Mapping[str, Any]
@@ -67,22 +68,27 @@ class Study:
 
     @cached_property
     def cost_order(self) -> ObservedOrder | None:
-        """Exponent of the wall time over the spacing; negative, since fine runs cost more."""
-        return _exponent([(p, p.wall_seconds) for p in self.points])
+        """Exponent of the particle-steps over the spacing; negative, since fine runs cost more.
+
+        Wall times of small runs are those of what does not grow with them, and vary with the load of the machine.
+        """
+        return _exponent([(p, p.particle_steps) for p in self.points])
 
 
 def studies_of(rows: Iterable[Row]) -> tuple[Study, ...]:
     """The studies in rows of a validation, in the order of their first rows.
 
-    A violated limit has a unit and is no discretisation error, so that limits make no study.
+    Violated limits, which have a unit, and changes with the resolution are no errors against a reference: they make no
+    study, nor do figures that are only reported.
     """
     points: dict[tuple[Any, ...], list[Point]] = {}
     for row in rows:
-        if not row.get("error_unit"):
+        if not row.get("error_unit") and not is_change(row):
             points.setdefault(_identity(row), []).append(_point(row))
     return tuple(
         Study(scene, quantity, dict(options), tuple(sorted(own, key=lambda p: -p.resolution)))
         for (scene, options, quantity), own in points.items()
+        if any(point.error is not None for point in own)
     )
 
 
