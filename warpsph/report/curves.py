@@ -62,7 +62,7 @@ def charts_of(results: Sequence[CaseResult], directory: Path) -> tuple[Chart, ..
 
     Runs that compare options show their finest resolutions only.
     """
-    shown = [result for result in _shown(results) if result.failure is None]
+    shown = _shown([result for result in results if result.failure is None])
     if not shown:
         return ()
     histories = [_history(directory / result.case.directory) for result in shown]
