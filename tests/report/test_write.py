@@ -86,7 +86,7 @@ def test_without_the_extra_a_line_says_what_to_install(
     scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr("warpsph.rendering.extra.find_spec", lambda module: None)
-    result = validated(scene_file, tmp_path / "out", "--report")
+    result = validated(scene_file, tmp_path / "out", "--report", "--quiet")
     assert result.exit_code == 0
     assert 'pip install "warpsph[render]"' in result.stderr
     html = (tmp_path / "out/report.html").read_text()

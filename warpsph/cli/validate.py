@@ -116,7 +116,8 @@ def in_words(case: Case) -> str:
 def write_report(
     results: Sequence[CaseResult], directory: Path, console: Console, *, with_page: bool
 ) -> None:
-    """Write what was found beside the runs, and say where it is and what is missing."""
+    """Write what was found beside the runs, and say where it is and, even if progress is not shown, what is missing."""
+    from warpsph.cli.consoles import plain_console
     from warpsph.report.content import scene_reports
     from warpsph.report.write import write_page, write_record
 
@@ -126,7 +127,7 @@ def write_report(
         path, notice = write_page(reports, directory)
         console.print(f"report {path}", soft_wrap=True)
         if notice:
-            console.print(notice, soft_wrap=True)
+            plain_console(stderr=True).print(notice, soft_wrap=True)
 
 
 def planned_cases(
