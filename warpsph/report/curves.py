@@ -92,7 +92,7 @@ def _history(run: Path) -> History:
 
 
 def _label(result: CaseResult) -> str:
-    spacing = f"{result.case.scene.spacing:g} m"
+    spacing = f"{result.case.scene.spacing:.4g} m"
     return ", ".join([*result.case.options, spacing])
 
 

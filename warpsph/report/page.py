@@ -79,10 +79,11 @@ def _overview(report: SceneReport) -> list[str]:
 
 
 def _kept(report: SceneReport) -> str:
-    """How many bounds of all runs hold."""
+    """How many bounds of all runs hold; coarse runs may have none."""
     verdicts = [row["holds"] for row in report.rows if row["holds"] is not None]
     kind = "yes" if all(result.holds for result in report.results) else "no"
-    return f"<span class='{kind}'>{sum(verdicts)} of {len(verdicts)}</span>"
+    text = f"{sum(verdicts)} of {len(verdicts)}" if verdicts else "there are none"
+    return f"<span class='{kind}'>{text}</span>"
 
 
 def _section(report: SceneReport, pictures: Mapping[str, bytes]) -> str:
