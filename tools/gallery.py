@@ -35,7 +35,7 @@ RECORD, PAGE, PICTURES = (
 )
 BEGIN, END = "<!-- gallery:begin -->", "<!-- gallery:end -->"
 PARTICLES, CURVE, ERRORS = "particles", "curve", "errors"
-PHOTO_SIZE, PHOTO_QUALITY, CHART_COLOURS = (720, 405), 82, 48
+PHOTO_SIZE, PHOTO_QUALITY, CHART_COLOURS = (720, 405), 82, 255
 """Pixels and quality of pictures of particles, and colours of charts: enough to see, little to keep."""
 
 Row = Mapping[str, Any]
