@@ -75,18 +75,18 @@ def _section(name: str, rows: list[Row], pictures: Path) -> Iterator[str]:
     yield from ("", f"## {name}", "", _description(name), "", f"*{sentence_of(rows)}*")
     for kind in (PARTICLES, CURVE, ERRORS):
         for path in sorted((pictures / name).glob(f"{kind}*")):
-            yield from ("", f"![{_caption(name, path)}](images/gallery/{name}/{path.name})")
+            yield from ("", f"![{name}](images/gallery/{name}/{path.name})", "", _caption(path))
 
 
-def _caption(name: str, path: Path) -> str:
+def _caption(path: Path) -> str:
     kind, _, spacing = path.stem.partition("_")
     match kind:
         case "particles":
-            return f"{name}: the end of the run at spacing {spacing} m"
+            return f"The end of a run at spacing {spacing} m."
         case "curve":
-            return f"{name}: runs over their reference"
+            return "Runs over their reference."
         case _:
-            return f"{name}: errors over resolution and cost"
+            return "Errors of the record."
 
 
 def _description(name: str) -> str:

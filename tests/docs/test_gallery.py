@@ -40,7 +40,7 @@ def test_the_page_states_error_cost_and_device_and_shows_the_pictures(tmp_path: 
     text = gallery.block(rows, tmp_path)
     told = "Front within 1.3 % for 40 s on one thread; halving the error takes 2.8 times the work."
     assert f"| [`tank`](#tank) | {told} | cpu, one thread |" in text
-    assert "![tank: errors over resolution and cost](images/gallery/tank/errors.png)" in text
+    assert "![tank](images/gallery/tank/errors.png)" in text
     assert "curve" not in text
 
 
