@@ -86,7 +86,8 @@ def test_compared_values_run_at_every_resolution(
         ("cubic_spline", 0.25),
     ]
     table = warpsph("validate", scene_file, *request, "--out", tmp_path).stdout
-    assert "numerics.kernel=cubic_spline" in table
+    assert "kernel=cubic_spline" in table
+    assert "tank: numerics.kernel makes no difference" in table
 
 
 @pytest.mark.parametrize(

@@ -9,7 +9,14 @@ import pytest
 from compared_scenes import TANK
 
 from warpsph.scene import SceneError
-from warpsph.validation.options import ComparedOption, combinations, compared_options, split_values
+from warpsph.validation.options import (
+    ComparedOption,
+    combinations,
+    compared_options,
+    options_in_words,
+    split_values,
+    without_effect,
+)
 from warpsph.validation.runner import Case, cases_of
 
 REFERENCES = {
@@ -90,3 +97,30 @@ def test_every_bad_value_is_told_once_with_its_option(scene_file: str) -> None:
         ("--compare numerics.nothing=2", "numerics.nothing"),
     }
     assert len(caught.value.problems) == 4
+
+
+def test_options_are_called_by_the_end_of_their_keys_where_that_is_enough() -> None:
+    assert options_in_words({"numerics.kernel": "a", "time.cfl": "0.1"}) == "kernel=a, cfl=0.1"
+    same = {"fluids.oil.density": "1", "fluids.water.density": "2"}
+    assert options_in_words(same) == "fluids.oil.density=1, fluids.water.density=2"
+    assert options_in_words(None) == ""
+
+
+def test_an_option_without_effect_is_found_beside_one_that_has_some() -> None:
+    rows = [
+        {"resolution": h, "quantity": "front", "value": h * float(a), "options": {"a": a, "b": b}}
+        for h in (0.2, 0.1)
+        for a in ("1", "2")
+        for b in ("x", "y")
+    ]
+    assert without_effect(rows) == ("b",)
+    assert without_effect([{"resolution": 0.1, "quantity": "front", "value": 1.0}]) == ()
+
+
+@pytest.mark.parametrize("values", [(1.0,), (None, None), (1.0, None)])
+def test_missing_figures_do_not_show_that_an_option_has_no_effect(values: tuple[float | None, ...]) -> None:
+    rows = [
+        {"resolution": 0.1, "quantity": "front", "value": value, "options": {"a": str(k)}}
+        for k, value in enumerate(values)
+    ]
+    assert without_effect(rows) == ()

@@ -9,8 +9,9 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from warpsph.validation.options import options_in_words, without_effect
 from warpsph.validation.runner import CaseResult
-from warpsph.validation.study import options_in_words, studies_of
+from warpsph.validation.study import studies_of
 
 Row = Mapping[str, Any]
 
@@ -38,7 +39,7 @@ def validation_table(results: Sequence[CaseResult]) -> Group:
         options = [options_in_words(row.get("options"))] if compared else []
         table.add_row(row["scene"], *options, f"{row['resolution']:g}", *_figures(row), *_cost(row))
     failures = [f"{result.case.directory}: {result.failure}" for result in results if result.failure]
-    return Group(table, *_remarks(rows), *_orders(rows), *failures)
+    return Group(table, *_remarks(rows), *_idle(rows), *_orders(rows), *failures)
 
 
 _FIGURES = ("quantity", "value", "reference", "error", "bound", "holds")
@@ -87,6 +88,15 @@ def _remarks(rows: Iterable[Row]) -> list[str]:
         if row.get("note"):
             remarks.append(f"{name}: {row['note']}")
     return remarks
+
+
+def _idle(rows: Sequence[Row]) -> list[str]:
+    """Compared options that a scene has no use for."""
+    return [
+        f"{scene}: {key} makes no difference"
+        for scene in dict.fromkeys(row["scene"] for row in rows)
+        for key in without_effect(row for row in rows if row["scene"] == scene)
+    ]
 
 
 def _run(row: Row) -> str:

@@ -10,7 +10,7 @@ from typing import Any
 from warpsph.report.sentence import sentence_of
 from warpsph.scene.schema import Scene
 from warpsph.validation.halving import halving_cost
-from warpsph.validation.options import as_mapping
+from warpsph.validation.options import as_mapping, without_effect
 from warpsph.validation.runner import CaseResult
 from warpsph.validation.study import Study, on_front, studies_of
 
@@ -67,6 +67,7 @@ class SceneReport:
             "scene": self.scene.name,
             "description": self.scene.description,
             "sentence": self.sentence,
+            "options_without_effect": without_effect(self.rows),
             "holds": all(result.holds for result in self.results),
             "studies": [record for studies in self.studies.values() for record in _study_records(studies)],
             "runs": [_run_record(result) for result in self.results],

@@ -17,6 +17,7 @@ from warpsph.output.probes_csv import TIME_COLUMN, read_probes
 from warpsph.output.run_directory import RunDirectory
 from warpsph.report.words import percent, quantity_in_words
 from warpsph.scene.references import FeatureReference, ProfileReference, RelativeTo, SeriesReference
+from warpsph.validation.options import as_mapping, options_in_words
 from warpsph.validation.runner import CaseResult
 
 FIELD_UNITS = {"pressure": "Pa", "density": "kg/m3"}
@@ -93,7 +94,7 @@ def _history(run: Path) -> History:
 
 def _label(result: CaseResult) -> str:
     spacing = f"{result.case.scene.spacing:.4g} m"
-    return ", ".join([*result.case.options, spacing])
+    return ", ".join(filter(None, (options_in_words(as_mapping(result.case.options)), spacing)))
 
 
 def _table_charts(results: Sequence[CaseResult], histories: Sequence[History]) -> Iterator[Chart]:

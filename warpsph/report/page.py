@@ -19,8 +19,9 @@ from warpsph.report.words import (
     wall_time,
 )
 from warpsph.validation.halving import halving_cost
+from warpsph.validation.options import as_mapping, options_in_words, without_effect
 from warpsph.validation.runner import CaseResult
-from warpsph.validation.study import Study, options_in_words
+from warpsph.validation.study import Study
 
 Pictures = Mapping[str, Mapping[str, bytes]]
 """PNGs by scene and by what they show."""
@@ -93,6 +94,7 @@ def _section(report: SceneReport, pictures: Mapping[str, bytes]) -> str:
             f"<h2 id='{name}'>{name}</h2>",
             f"<p class='sentence'>{escape(report.sentence)}</p>",
             f"<p>{escape(report.scene.description)}</p>",
+            *_compared(report),
             *(_image(title, data) for title, data in pictures.items()),
             "<h3>Errors and their cost</h3>",
             _error_table(report),
@@ -104,6 +106,18 @@ def _section(report: SceneReport, pictures: Mapping[str, bytes]) -> str:
             _list(_sources(report)),
         ]
     )
+
+
+def _compared(report: SceneReport) -> Iterator[str]:
+    """The compared options by their full keys, and what is of no use to this scene."""
+    values: dict[str, dict[str, None]] = {}
+    for result in report.results:
+        for key, value in as_mapping(result.case.options).items():
+            values.setdefault(key, {})[value] = None
+    for key, found in values.items():
+        yield f"<p>Compared: {escape(key)} = {escape(', '.join(found))}.</p>"
+    for key in without_effect(report.rows):
+        yield f"<p class='no'>{escape(key)} makes no difference here: every figure is the same.</p>"
 
 
 def _image(title: str, data: bytes) -> str:

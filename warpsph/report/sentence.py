@@ -9,7 +9,8 @@ from typing import Any
 from warpsph.report.words import machine, percent, quantity_in_words, quoted_error, wall_time
 from warpsph.validation.convergence import is_change
 from warpsph.validation.halving import halving_cost
-from warpsph.validation.study import Study, options_in_words, studies_of
+from warpsph.validation.options import options_in_words
+from warpsph.validation.study import Study, studies_of
 
 Row = Mapping[str, Any]
 

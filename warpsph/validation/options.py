@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import product
 from typing import Any
@@ -70,6 +70,35 @@ def combinations(options: Sequence[ComparedOption]) -> tuple[tuple[str, ...], ..
 def as_mapping(overrides: Iterable[str]) -> dict[str, str]:
     """Values by key of such a combination."""
     return {key: value for key, _, value in (override.partition("=") for override in overrides)}
+
+
+def options_in_words(options: Mapping[str, str] | None) -> str:
+    """Compared options as `key=value, key=value`, of keys only the last part where that tells them apart."""
+    known = options or {}
+    short = [key.rpartition(".")[2] for key in known]
+    names = short if len(set(short)) == len(short) else list(known)
+    return ", ".join(f"{name}={value}" for name, value in zip(names, known.values(), strict=True))
+
+
+def without_effect(rows: Iterable[Mapping[str, Any]]) -> tuple[str, ...]:
+    """Compared keys of which no value changes any figure in the rows of one scene: it has no use for them.
+
+    Figures that are missing, or that only one value has so far, tell nothing.
+    """
+    figures: dict[str, dict[tuple[Any, ...], dict[str, float]]] = {}
+    for row in rows:
+        options = row.get("options") or {}
+        for key in options:
+            others = tuple(item for item in options.items() if item[0] != key)
+            found = figures.setdefault(key, {}).setdefault((row["resolution"], row["quantity"], others), {})
+            if row["value"] is not None:
+                found[options[key]] = row["value"]
+    return tuple(key for key, groups in figures.items() if _all_same(groups.values()))
+
+
+def _all_same(groups: Iterable[Mapping[str, float]]) -> bool:
+    compared = [set(group.values()) for group in groups if len(group) > 1]
+    return bool(compared) and all(len(values) == 1 for values in compared)
 
 
 def problems_of(error: SceneError, overrides: Sequence[str]) -> Iterator[Problem]:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 from warpsph.validation.convergence import is_change
+from warpsph.validation.options import options_in_words
 from warpsph.validation.order import ObservedOrder, observed_order
 
 Row = Mapping[str, Any]
@@ -90,11 +91,6 @@ def studies_of(rows: Iterable[Row]) -> tuple[Study, ...]:
         for (scene, options, quantity), own in points.items()
         if any(point.error is not None for point in own)
     )
-
-
-def options_in_words(options: Mapping[str, str] | None) -> str:
-    """Compared options as `key=value, key=value`."""
-    return ", ".join(f"{key}={value}" for key, value in (options or {}).items())
 
 
 def efficient(costs: Sequence[float | None], errors: Sequence[float | None]) -> list[bool]:
