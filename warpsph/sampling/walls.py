@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from warpsph.sampling.axes import face_axes, own_axes, same_axes
-from warpsph.sampling.body_fitted import body_fitted_layers
+from warpsph.sampling.body_fitted import body_fitted_layers, has_layers
 from warpsph.sampling.lattice import TIE, CellBlock, Lattice, cells_inside
 from warpsph.sampling.layers import Layering, core
 from warpsph.scene.bounds import bounding_box
@@ -36,12 +36,12 @@ def layer_count(boundary: Boundary, scene: Scene) -> int:
 def sample_wall(boundary: Boundary, lattice: Lattice, layers: int, period: Period) -> np.ndarray:
     """Positions (n, dimension) [m] of a boundary's particles.
 
-    Surfaces along the lattice continue the lattice; all others carry layers of their own. Nothing lies beyond
-    an open face, nor outside the period of a periodic axis.
+    Surfaces along the lattice and those of meshes continue the lattice; all others carry layers of their own.
+    Nothing lies beyond an open face, nor outside the period of a periodic axis.
     """
     shape, dimension = boundary.shape, len(lattice.origin)
     axes = face_axes(shape, dimension)
-    if axes is None or not same_axes(axes, lattice.rotation):
+    if has_layers(shape) and (axes is None or not same_axes(axes, lattice.rotation)):
         positions = _body_fitted_wall(boundary, lattice, layers)
     elif isinstance(shape, Plane):
         positions = cells_inside(

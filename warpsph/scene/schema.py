@@ -17,6 +17,7 @@ from warpsph.scene.document import Document, placed
 from warpsph.scene.dump import to_yaml
 from warpsph.scene.errors import SceneError
 from warpsph.scene.expressions import Expression, VectorField
+from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
@@ -257,7 +258,9 @@ class Scene(SceneModel):
 
     @model_validator(mode="after")
     def _refuse_nonsense(self, info: ValidationInfo) -> Scene:
-        problems = list(scene_problems(self, info.context))
+        context = info.context
+        declared = context.declared if isinstance(context, LoadContext) else None
+        problems = list(scene_problems(self, declared))
         if problems:
             raise SceneError(problems)
         return self
