@@ -84,6 +84,35 @@ def test_walls_of_meshes_continue_the_lattice(files: dict[str, str], side: str) 
     assert np.all(cKDTree(points).query_ball_point(close, 0.051, return_length=True) == 7)
 
 
+def test_open_faces_of_a_tank_from_a_mesh_are_those_of_its_box(files: dict[str, str]) -> None:
+    box = {"type": "box", "min": [-0.5] * 3, "max": [0.5] * 3}
+    tanks = [
+        sampled(
+            0.1,
+            fluids=water(box),
+            boundaries={"tank": {"shape": shape, "side": "outside", "open": ["z_max"]}},
+        )
+        for shape in (box, {"type": "mesh", "file": files["box"]})
+    ]
+    expected, found = (sets["tank"].position for sets in tanks)
+    assert expected[:, 2].max() < 0.5
+    assert found == pytest.approx(expected, abs=1e-12)
+
+
+def test_relaxed_particles_of_a_mesh(files: dict[str, str]) -> None:
+    ball = {"type": "mesh", "file": files["ball"]}
+    body = water(ball)
+    body["water"]["placement"] = "relaxed"
+    tank = {"shape": ball, "side": "outside", "layers": 2, "placement": "relaxed"}
+    sets = sampled(0.1, fluids=body, boundaries={"tank": tank})
+    for name, low, high in (("water", 0.0, 0.46), ("tank", 0.54, 0.66)):
+        radius = np.linalg.norm(sets[name].position, axis=1)
+        assert low <= radius.min()
+        assert radius.max() <= high
+        assert sets[name].evenness is not None
+        assert sets[name].evenness.unevenness < 0.06
+
+
 def test_structure_from_a_mesh(files: dict[str, str]) -> None:
     steel = {"density": 7800.0, "youngs_modulus": 2e11, "poisson_ratio": 0.3}
     body = {"shape": {"type": "mesh", "file": files["ball"]}, "material": steel}
