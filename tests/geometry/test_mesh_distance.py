@@ -4,7 +4,7 @@ import mesh_builders as build
 import numpy as np
 import pytest
 
-from warpsph.geometry.mesh import closed_mesh
+from warpsph.geometry.closing import closed_mesh
 from warpsph.geometry.mesh_distance import mesh_distance
 from warpsph.sampling.distance import signed_distance
 from warpsph.scene.shapes import Box

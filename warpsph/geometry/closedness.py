@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
 from warpsph.geometry.errors import GeometryError
-from warpsph.geometry.winding import signed_volume, sparse_graph, winding_number
+from warpsph.geometry.winding import signed_volume, winding_number
 
 _REMEDY = (
     "a closed surface: join vertices and fill the holes in a modelling program (in Blender: Mesh, Merge by Distance; "
@@ -102,9 +103,14 @@ def turned_outwards(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return result
 
 
+def graph(pairs: np.ndarray, count: int) -> coo_matrix:
+    """The graph of `count` nodes with an edge for each of the pairs (n, 2)."""
+    return coo_matrix((np.ones(len(pairs), dtype=bool), tuple(pairs.T)), shape=(count, count))
+
+
 def _components(pairs: np.ndarray, count: int) -> np.ndarray:
     """The component (count,) of each node of a graph with the edges `pairs` (n, 2)."""
-    return np.asarray(connected_components(sparse_graph(pairs, count), directed=False)[1])
+    return np.asarray(connected_components(graph(pairs, count), directed=False)[1])
 
 
 def _at(point: np.ndarray) -> str:

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import trimesh
 
+from warpsph.geometry.closing import closed_mesh
 from warpsph.geometry.errors import GeometryError
-from warpsph.geometry.mesh import TriangleMesh, closed_mesh
+from warpsph.geometry.mesh import TriangleMesh
 from warpsph.geometry.usd_meshes import USD_SUFFIXES, read_stage
 
 MESH_SUFFIXES = (".stl", ".obj", ".ply", *USD_SUFFIXES)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse import coo_matrix
 
 
 def signed_volume(corners: np.ndarray) -> float:
@@ -23,8 +22,3 @@ def winding_number(corners: np.ndarray, point: np.ndarray) -> float:
     ab, bc, ca = (np.einsum("ni,ni->n", u, v) for u, v in ((a, b), (b, c), (c, a)))
     below = la * lb * lc + ab * lc + bc * la + ca * lb
     return float(np.arctan2(above, below).sum() / (2.0 * np.pi))
-
-
-def sparse_graph(pairs: np.ndarray, count: int) -> coo_matrix:
-    """The graph of `count` nodes with an edge for each of the pairs (n, 2)."""
-    return coo_matrix((np.ones(len(pairs), dtype=bool), tuple(pairs.T)), shape=(count, count))

@@ -4,8 +4,8 @@ import mesh_builders as build
 import numpy as np
 import pytest
 
+from warpsph.geometry.closing import closed_mesh
 from warpsph.geometry.errors import GeometryError
-from warpsph.geometry.mesh import closed_mesh
 from warpsph.geometry.winding import winding_number
 
 
