@@ -13,6 +13,7 @@ from scipy.spatial import cKDTree
 
 from warpsph.sampling import sample
 from warpsph.sampling.sets import SampledSet
+from warpsph.scene.errors import SceneError
 from warpsph.scene.schema import Scene
 
 Spec = dict[str, Any]
@@ -111,6 +112,14 @@ def test_relaxed_particles_of_a_mesh(files: dict[str, str]) -> None:
         assert radius.max() <= high
         assert sets[name].evenness is not None
         assert sets[name].evenness.unevenness < 0.06
+
+
+def test_wall_of_a_mesh_in_the_wrong_unit_is_refused(files: dict[str, str]) -> None:
+    wall = {"shape": {"type": "mesh", "file": files["box"], "unit": 1000.0}, "side": "outside"}
+    fluid = water({"type": "box", "min": [-0.5] * 3, "max": [0.5] * 3})
+    with pytest.raises(SceneError, match="1000 x 1000 x 1000 m, has 1e\\+12 cells") as refused:
+        sampled(0.1, fluids=fluid, boundaries={"wall": wall})
+    assert "another unit of its file" in str(refused.value)
 
 
 def test_structure_from_a_mesh(files: dict[str, str]) -> None:

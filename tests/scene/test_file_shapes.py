@@ -99,6 +99,12 @@ def test_what_is_no_solid_is_an_error_of_the_scene(
     assert (problem.file, problem.line) == (str(folder / "scene.yaml"), 9 if key else 8)
 
 
+def test_mesh_in_millimetres_taken_for_metres_is_told_by_its_size(folder: Path) -> None:
+    problem = problem_of(scene_file(folder, "{type: mesh, file: box.stl, unit: 100}"))
+    assert problem.key == "spacing"
+    assert "most of them fluids.water.shape of 100 x 200 x 300 m" in problem.message
+
+
 def test_open_mesh_is_an_error_of_the_scene(folder: Path) -> None:
     vertices, faces = build.box()
     trimesh.Trimesh(vertices, faces[1:]).export(folder / "open.stl")
