@@ -19,7 +19,8 @@ from warpsph.scene.units import LengthUnit, in_metres
 class Mesh(FileShape):
     """The inside of a closed surface of triangles from an STL, OBJ, PLY or USD file; three dimensions only.
 
-    Shells within others that face inwards bound cavities; shells that overlap count as one solid.
+    Shells within others that face inwards bound cavities; shells that overlap count as one solid. Particles follow the
+    surface with `placement: relaxed`, of the fluid as of what it meets there.
     """
 
     type: Literal["mesh"] = "mesh"
