@@ -16,7 +16,7 @@ import warpsph
 ROOT = Path(__file__).parents[1]
 
 LAYERS: tuple[tuple[str, ...], ...] = (
-    ("warpsph.laws",),
+    ("warpsph.laws", "warpsph.geometry"),
     ("warpsph.scene", "warpsph.frame"),
     ("warpsph.sampling", "warpsph.output", "warpsph.particles"),
     ("warpsph.probes",),

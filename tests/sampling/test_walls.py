@@ -26,7 +26,7 @@ def wall(
     spec: Boundary, dimension: int = 2, period: dict[int, tuple[float, float]] | None = None
 ) -> np.ndarray:
     lattice = Lattice(SPACING, np.zeros(dimension), np.eye(dimension))
-    return sample_wall(spec, lattice, 3, period or {})
+    return sample_wall(spec, lattice, 3, period or {}).position
 
 
 @pytest.mark.parametrize(("support", "layers"), [(3.0, 3), (2.6, 3), (2.0 * 1.5, 3), (2.0, 2), (4.1, 5)])
@@ -78,7 +78,7 @@ def test_the_open_face_turns_with_the_tank() -> None:
     turned = {"type": "transform", "shape": SQUARE, "rotate": {"angle": 30.0}}
     rotation = np.array([[np.sqrt(0.75), -0.5], [0.5, np.sqrt(0.75)]])
     spec = boundary(turned, open=["y_max"])
-    positions = sample_wall(spec, Lattice(SPACING, np.zeros(2), rotation), 3, {})
+    positions = sample_wall(spec, Lattice(SPACING, np.zeros(2), rotation), 3, {}).position
     upright = wall(boundary(SQUARE, open=["y_max"]))
     assert cKDTree(positions).query(upright @ rotation.T)[0].max() < 1e-9
     assert len(positions) == len(upright)

@@ -49,7 +49,9 @@ def test_a_run_leaves_everything_behind(tmp_path):
         "frames.h5",
         "checkpoint.h5",
     }
-    assert json.loads((tmp_path / "summary.json").read_text())["status"] == "complete"
+    record = json.loads((tmp_path / "summary.json").read_text())
+    assert record["status"] == "complete"
+    assert [shape["name"] for shape in record["shapes"]] == [one["name"] for one in record["sets"]]
     stage = Usd.Stage.Open(str(tmp_path / "particles.usdc"))
     points = [UsdGeom.Points(prim) for prim in stage.Traverse() if prim.IsA(UsdGeom.Points)]
     assert sum(len(p.GetPointsAttr().Get(8)) for p in points) == summary["particles"]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 from warpsph.cli.failures import ExitCode, reported
@@ -45,6 +45,8 @@ def show_description(console: Console, description: Mapping[str, Any], end: floa
         _table(("set", "kind", "particles"), ((s["name"], s["kind"], str(s["particles"])) for s in sets))
     )
     console.print()
+    console.print(_table(_SHAPE_HEADER, map(_shape_row, description["shapes"])))
+    console.print()
     fields = ((f["name"], f["unit"], size_in_words(f["bytes"])) for f in description["fields"])
     console.print(_table(("field", "unit", "memory"), fields))
     console.print(f"neighbour lists {size_in_words(description['list_bytes'])}")
@@ -59,6 +61,45 @@ def show_description(console: Console, description: Mapping[str, Any], end: floa
         f"{duration(description['estimated_wall_s'])} on two CPU cores",
         soft_wrap=True,
     )
+
+
+_SHAPE_HEADER = (
+    "set",
+    "shape",
+    "volume",
+    "sampled",
+    "error",
+    "extent [m]",
+    "sampled [m]",
+    "unevenness",
+    "closest [dp]",
+    "spread [dp]",
+)
+
+
+def _shape_row(record: Mapping[str, Any]) -> tuple[str, ...]:
+    """What a shape encloses beside what its particles do; of layers along a surface the volume is no error."""
+    volume, sampled, even = record["volume"], record["sampled_volume"], record["evenness"]
+    compared = volume is not None and record["is_filled"]
+    return (
+        record["name"],
+        record["shape"],
+        "-" if volume is None else f"{volume:.5g}",
+        f"{sampled:.5g}",
+        f"{sampled / volume - 1.0:+.2%}" if compared else "-",
+        _extent(record["extent"]),
+        _extent(record["sampled_extent"]),
+        "-" if even is None else f"{even['unevenness']:.2%}",
+        "-" if even is None else f"{even['closest']:.2f}",
+        "-" if even is None else f"{even['spread']:.2f}",
+    )
+
+
+def _extent(corners: Sequence[Sequence[float]] | None) -> str:
+    """The two ends of each axis, one axis a line."""
+    if corners is None:
+        return "endless"
+    return "\n".join(f"{low:.4g} to {high:.4g}" for low, high in zip(*corners, strict=True))
 
 
 def size_in_words(size: float) -> str:

@@ -46,7 +46,7 @@ def _common_axes(axes: list[np.ndarray | None]) -> np.ndarray | None:
 
 
 def _edges(shape: Polygon | Extrusion) -> np.ndarray:
-    corners = np.array(shape.points)
+    corners = shape.outline
     return np.roll(corners, -1, axis=0) - corners
 
 

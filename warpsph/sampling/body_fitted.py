@@ -10,9 +10,14 @@ from warpsph.sampling.distance import signed_distance
 from warpsph.sampling.layers import Layering, surface_layers
 from warpsph.sampling.packing import CLOSEST, filled, thinned
 from warpsph.sampling.pieces import Piece, pieces_of
-from warpsph.scene.shapes import Shape
+from warpsph.scene.shapes import Mesh, Shape
 
 _AGREES = 0.1
+
+
+def has_layers(shape: Shape) -> bool:
+    """Whether there are layers that follow all surfaces of a shape: those of meshes have none."""
+    return not isinstance(shape, Mesh) and all(has_layers(part) for _, part in shape.parts())
 
 
 def body_fitted_layers(shape: Shape, layering: Layering) -> np.ndarray:

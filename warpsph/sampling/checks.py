@@ -9,6 +9,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from warpsph.sampling.axes import face_axes
+from warpsph.sampling.body_fitted import has_layers
 from warpsph.sampling.clamps import clamped
 from warpsph.sampling.contact import as_wall, inside_wall
 from warpsph.sampling.walls import layer_count
@@ -112,9 +113,18 @@ def _wall_shape_problems(scene: Scene, name: str) -> Iterator[Problem]:
         yield Problem.at(key, "a wall without end cannot be made", "a shape that ends on all sides")
         return
     cells = float(np.prod((high - low) / scene.spacing))
-    if face_axes(shape, scene.dimension) is not None and cells > MAX_CELLS:
-        message = f"the box around this wall has {cells:.2g} cells of this spacing"
-        yield Problem.at(key, message, f"at most {MAX_CELLS:.2g}: a smaller shape, or a larger spacing")
+    if _is_cut_from_lattice(scene, name) and cells > MAX_CELLS:
+        size = " x ".join(f"{length:.4g}" for length in high - low)
+        message = f"the box around this wall, {size} m, has {cells:.2g} cells of this spacing"
+        allowed = f"at most {MAX_CELLS:.2g}: a smaller shape, another unit of its file, or a larger spacing"
+        yield Problem.at(key, message, allowed)
+
+
+def _is_cut_from_lattice(scene: Scene, name: str) -> bool:
+    """Whether a wall needs the cells of the box around it; layers that follow a surface do not."""
+    boundary = scene.boundaries[name]
+    in_layers = has_layers(boundary.shape) and face_axes(boundary.shape, scene.dimension) is None
+    return boundary.placement != "auto" or not in_layers
 
 
 def _wall_period_problems(scene: Scene, name: str) -> Iterator[Problem]:

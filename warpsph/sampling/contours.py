@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from warpsph.geometry.polygons import polygon_area
 from warpsph.sampling.distance import DistanceFunction, polygon_distance, steepest_direction
 from warpsph.sampling.packing import CLOSEST, filled, thinned
 
@@ -79,9 +80,7 @@ def _in_the_middle(points: np.ndarray, behind: DistanceFunction, spacing: float)
 
 
 def _counter_clockwise(corners: np.ndarray) -> np.ndarray:
-    x, y = corners.T
-    area = np.dot(x, np.roll(y, -1)) - np.dot(y, np.roll(x, -1))
-    return corners if area > 0.0 else corners[::-1]
+    return corners if polygon_area(corners) > 0.0 else corners[::-1]
 
 
 def _chains(corners: np.ndarray) -> Iterator[Chain]:

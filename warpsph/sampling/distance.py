@@ -14,6 +14,8 @@ from warpsph.scene.shapes import (
     Difference,
     Extrusion,
     Intersection,
+    Mesh,
+    Naca,
     Plane,
     Polygon,
     Shape,
@@ -46,9 +48,9 @@ def surface_normals(shape: Shape, points: np.ndarray, spacing: float) -> np.ndar
 def signed_distance(shape: Shape, points: np.ndarray) -> np.ndarray:
     """Distance (n,) [m] of points (n, dimension) [m] from the surface, negative inside.
 
-    Exact for the primitives and their transforms. For unions it is exact outside, for intersections and
-    differences inside; elsewhere its sign is right and its magnitude a lower bound. It never changes faster
-    than the distance walked (Lipschitz constant 1).
+    Exact for the primitives, meshes whose shells do not overlap, and their transforms. For unions it is exact outside,
+    for intersections and differences inside; elsewhere its sign is right and its magnitude a lower bound. It never
+    changes faster than the distance walked (Lipschitz constant 1).
     """
     raise TypeError(f"no signed distance is defined for {type(shape).__name__}")
 
@@ -74,17 +76,25 @@ def _(shape: Cylinder, points: np.ndarray) -> np.ndarray:
     return _prism_distance(radial, np.abs(height - length / 2.0) - length / 2.0)
 
 
-@signed_distance.register
-def _(shape: Polygon, points: np.ndarray) -> np.ndarray:
-    return polygon_distance(np.array(shape.points), points)
+@signed_distance.register(Polygon)
+@signed_distance.register(Naca)
+def _(shape: Polygon | Naca, points: np.ndarray) -> np.ndarray:
+    return polygon_distance(shape.outline, points)
 
 
 @signed_distance.register
 def _(shape: Extrusion, points: np.ndarray) -> np.ndarray:
     axis = "xyz".index(shape.axis)
-    across = polygon_distance(np.array(shape.points), np.delete(points, axis, axis=1))
+    across = polygon_distance(shape.outline, np.delete(points, axis, axis=1))
     middle, half = (shape.low + shape.high) / 2.0, (shape.high - shape.low) / 2.0
     return _prism_distance(across, np.abs(points[:, axis] - middle) - half)
+
+
+@signed_distance.register
+def _(shape: Mesh, points: np.ndarray) -> np.ndarray:
+    from warpsph.geometry.mesh_distance import mesh_distance  # with it comes Warp, which others do without
+
+    return mesh_distance(shape.surface)(points)
 
 
 @signed_distance.register

@@ -36,6 +36,10 @@ class Lattice:
         """Centres (n, dimension) [m] of cells, given by their indices (n, dimension)."""
         return (self.origin + (cells + 0.5) * self.spacing) @ self.rotation.T
 
+    def cells_of(self, centers: np.ndarray) -> np.ndarray:
+        """Indices (n, dimension) of the cells with these centres (n, dimension) [m]: the inverse of `centers`."""
+        return np.rint((centers @ self.rotation - self.origin) / self.spacing - 0.5).astype(np.int64)
+
     def cells_between(self, low: np.ndarray, high: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """First cell and number of cells (dimension,) whose centres lie in a box along the lattice's axes."""
         first = np.ceil((low - self.origin) / self.spacing - 0.5 - TIE)

@@ -11,7 +11,7 @@ from warpsph.sampling.contours import disc_layers, polygon_layers
 from warpsph.sampling.distance import signed_distance
 from warpsph.sampling.lattice import Lattice, cells_inside
 from warpsph.sampling.packing import SURFACE_CLEARANCE, pushed_inside
-from warpsph.scene.shapes import Box, Cylinder, Extrusion, Plane, Polygon, Shape, Sphere
+from warpsph.scene.shapes import Box, Cylinder, Extrusion, Naca, Plane, Polygon, Shape, Sphere
 
 
 @dataclass(frozen=True)
@@ -56,9 +56,10 @@ def surface_layers(shape: Shape, layering: Layering) -> np.ndarray:
     raise TypeError(f"no layers are defined for {type(shape).__name__}")
 
 
-@surface_layers.register
-def _(shape: Polygon, layering: Layering) -> np.ndarray:
-    return polygon_layers(np.array(shape.points), layering.depths, layering.outward, layering.spacing)
+@surface_layers.register(Polygon)
+@surface_layers.register(Naca)
+def _(shape: Polygon | Naca, layering: Layering) -> np.ndarray:
+    return polygon_layers(shape.outline, layering.depths, layering.outward, layering.spacing)
 
 
 @surface_layers.register
@@ -85,7 +86,8 @@ def _(shape: Extrusion, layering: Layering) -> np.ndarray:
     axis = "xyz".index(shape.axis)
     across = [k for k in range(3) if k != axis]
     frame = np.eye(3)[:, [*across, axis]]
-    return _prism_layers(Polygon(points=shape.points), frame, shape.low, shape.high, layering)
+    section = shape.section or Polygon(points=shape.points)
+    return _prism_layers(section, frame, shape.low, shape.high, layering)
 
 
 @surface_layers.register

@@ -7,7 +7,7 @@ from functools import partial
 import numpy as np
 
 from warpsph.sampling.distance import signed_distance, steepest_direction
-from warpsph.sampling.walls import Period
+from warpsph.sampling.regions import Period
 from warpsph.scene.schema import Boundary
 from warpsph.scene.shapes import Box, Shape
 from warpsph.scene.types import AXES

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -19,11 +20,14 @@ from warpsph.sampling.initial_state import initial_field, initial_pressure
 from warpsph.sampling.kinematics import rigid_motions
 from warpsph.sampling.lattice import Lattice, cells_inside
 from warpsph.sampling.packing import CLOSEST, away_from
+from warpsph.sampling.regions import Period, body_region
 from warpsph.sampling.scene_lattices import lattices_of
-from warpsph.sampling.sets import SampledSet
+from warpsph.sampling.sets import Placed, SampledSet
+from warpsph.sampling.surface_relaxation import relaxed
 from warpsph.sampling.walls import layer_count, period_of, sample_wall
 from warpsph.scene.errors import Problem, SceneError
-from warpsph.scene.schema import Scene
+from warpsph.scene.schema import Fluid, Scene
+from warpsph.scene.structures import Structure
 
 Positions = Mapping[str, np.ndarray]
 """Positions (n, dimension) [m] of the particles of each set."""
@@ -36,14 +40,18 @@ def sample(scene: Scene) -> tuple[SampledSet, ...]:
     """
     _refuse(geometry_problems(scene))
     lattices = lattices_of(scene)
-    structures = {
-        name: cells_inside(lattices[name], structure.shape).positions()
-        for name, structure in scene.structures.items()
+    filled = {
+        name: _filled(body, lattices[name], period_of(scene))
+        for bodies in (scene.structures, scene.fluids)
+        for name, body in bodies.items()
     }
-    walls = _clear_of_clamps(scene, _walls(scene, lattices), structures)
-    cells = {
-        name: cells_inside(lattices[name], fluid.shape).positions() for name, fluid in scene.fluids.items()
+    layers = {
+        name: sample_wall(boundary, lattices[name], layer_count(boundary, scene), period_of(scene))
+        for name, boundary in scene.boundaries.items()
     }
+    structures = {name: filled[name].position for name in scene.structures}
+    walls = _clear_of_clamps(scene, _joined_walls(scene, layers), structures)
+    cells = {name: filled[name].position for name in scene.fluids}
     _refuse(wall_conflict_problems(scene, cells, walls))
     _refuse(structure_conflict_problems(scene, cells, walls, structures))
     fluids = {name: _clear_of_walls(scene, points, walls, structures) for name, points in cells.items()}
@@ -51,11 +59,13 @@ def sample(scene: Scene) -> tuple[SampledSet, ...]:
     _refuse([problem for kind, sets in kinds.items() for problem in empty_problems(kind, sets)])
     _refuse(overlap_problems("fluids", fluids, scene.spacing))
     _refuse(overlap_problems("structures", structures, scene.spacing))
-    return (
+    sets = (
         *_fluid_sets(scene, fluids),
         *_boundary_sets(scene, walls),
         *_structure_sets(scene, structures),
     )
+    placed = filled | layers
+    return tuple(replace(one, evenness=placed[one.name].evenness) for one in sets)
 
 
 def _refuse(problems: Iterable[Problem]) -> None:
@@ -64,11 +74,19 @@ def _refuse(problems: Iterable[Problem]) -> None:
         raise SceneError(found)
 
 
-def _walls(scene: Scene, lattices: Mapping[str, Lattice]) -> Positions:
+def _filled(body: Fluid | Structure, lattice: Lattice, period: Period) -> Placed:
+    """The particles of a body."""
+    points = cells_inside(lattice, body.shape).positions()
+    if body.placement == "lattice":
+        return Placed(points)
+    return relaxed(points, body_region(body.shape, period), lattice)
+
+
+def _joined_walls(scene: Scene, layers: Mapping[str, Placed]) -> Positions:
     """Wall particles; where walls overlap that move alike, those of the later one are left out."""
     walls: dict[str, np.ndarray] = {}
     for name, boundary in scene.boundaries.items():
-        points = sample_wall(boundary, lattices[name], layer_count(boundary, scene), period_of(scene))
+        points = layers[name].position
         for earlier, others in walls.items():
             if scene.boundaries[earlier].motion == boundary.motion:
                 points = away_from(points, others, CLOSEST * scene.spacing)

@@ -3,22 +3,21 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
 
 import numpy as np
 from scipy.ndimage import maximum_filter1d
 
 from warpsph.sampling.axes import face_axes, own_axes, same_axes
-from warpsph.sampling.body_fitted import body_fitted_layers
+from warpsph.sampling.body_fitted import body_fitted_layers, has_layers
 from warpsph.sampling.lattice import TIE, CellBlock, Lattice, cells_inside
 from warpsph.sampling.layers import Layering, core
+from warpsph.sampling.regions import Period, wall_region
+from warpsph.sampling.sets import Placed
+from warpsph.sampling.surface_relaxation import relaxed
 from warpsph.scene.bounds import bounding_box
 from warpsph.scene.schema import Boundary, Scene
 from warpsph.scene.shapes import Box, Plane, Shape
 from warpsph.scene.types import AXES
-
-Period = Mapping[int, tuple[float, float]]
-"""Lower and upper end [m] of each periodic axis, by the axis' index."""
 
 
 def period_of(scene: Scene) -> Period:
@@ -33,15 +32,20 @@ def layer_count(boundary: Boundary, scene: Scene) -> int:
     return math.ceil(scene.support_radius / scene.spacing - TIE) if scene.fluids else 1
 
 
-def sample_wall(boundary: Boundary, lattice: Lattice, layers: int, period: Period) -> np.ndarray:
-    """Positions (n, dimension) [m] of a boundary's particles.
+def sample_wall(boundary: Boundary, lattice: Lattice, layers: int, period: Period) -> Placed:
+    """The particles of a boundary.
 
-    Surfaces along the lattice continue the lattice; all others carry layers of their own. Nothing lies beyond
-    an open face, nor outside the period of a periodic axis.
+    If the boundary does not say how, surfaces along the lattice and those of meshes continue the lattice, and all
+    others carry layers of their own. Nothing lies beyond an open face, nor outside the period of a periodic axis.
     """
     shape, dimension = boundary.shape, len(lattice.origin)
     axes = face_axes(shape, dimension)
-    if axes is None or not same_axes(axes, lattice.rotation):
+    on_lattice = axes is not None and same_axes(axes, lattice.rotation)
+    evenness = None
+    if boundary.placement == "relaxed":
+        placed = _relaxed_wall(boundary, lattice, layers, period)
+        positions, evenness = placed.position, placed.evenness
+    elif boundary.placement == "auto" and has_layers(shape) and not on_lattice:
         positions = _body_fitted_wall(boundary, lattice, layers)
     elif isinstance(shape, Plane):
         positions = cells_inside(
@@ -51,7 +55,7 @@ def sample_wall(boundary: Boundary, lattice: Lattice, layers: int, period: Perio
         positions = _lattice_wall(shape, boundary.side, lattice, layers, period)
     margin = TIE * lattice.spacing
     positions = positions[~beyond_open_faces(positions, boundary, margin)]
-    return positions[_within_period(positions, period, margin)]
+    return Placed(positions[_within_period(positions, period, margin)], evenness)
 
 
 def beyond_open_faces(points: np.ndarray, boundary: Boundary, margin: float) -> np.ndarray:
@@ -89,6 +93,12 @@ def _lattice_wall(shape: Shape, side: str, lattice: Lattice, layers: int, period
     else:
         wall = padded.mask & _grown(~padded.mask, layers)
     return CellBlock(lattice, padded.first, wall).positions()
+
+
+def _relaxed_wall(boundary: Boundary, lattice: Lattice, layers: int, period: Period) -> Placed:
+    region = wall_region(boundary, layers * lattice.spacing, period)
+    points = _lattice_wall(boundary.shape, boundary.side, lattice, layers, period)
+    return relaxed(points[region(points) < 0.0], region, lattice)
 
 
 def _within_periodic_cells(block: CellBlock, period: Period) -> CellBlock:

@@ -15,6 +15,8 @@ from warpsph.scene.shapes import (
     Difference,
     Extrusion,
     Intersection,
+    Mesh,
+    Naca,
     Plane,
     Polygon,
     Shape,
@@ -48,9 +50,9 @@ def dimension_of(shape: Shape) -> int:
             return len(shape.center)
         case Plane():
             return len(shape.point)
-        case Polygon():
+        case Polygon() | Naca():
             return 2
-        case Cylinder() | Extrusion():
+        case Cylinder() | Extrusion() | Mesh():
             return 3
         case _:
             return dimension_of(next(shape.parts())[1])
@@ -83,15 +85,21 @@ def _(shape: Cylinder, direction: np.ndarray) -> Interval:
     return ends.min() - reach, ends.max() + reach
 
 
+@extent.register(Polygon)
+@extent.register(Naca)
+def _(shape: Polygon | Naca, direction: np.ndarray) -> Interval:
+    return _range(shape.outline @ direction)
+
+
 @extent.register
-def _(shape: Polygon, direction: np.ndarray) -> Interval:
-    return _range(np.dot(shape.points, direction))
+def _(shape: Mesh, direction: np.ndarray) -> Interval:
+    return _range(shape.surface.vertices @ direction)
 
 
 @extent.register
 def _(shape: Extrusion, direction: np.ndarray) -> Interval:
     axis = "xyz".index(shape.axis)
-    across = np.dot(shape.points, np.delete(direction, axis))
+    across = shape.outline @ np.delete(direction, axis)
     return _range(np.add.outer(across, direction[axis] * np.array([shape.low, shape.high])))
 
 

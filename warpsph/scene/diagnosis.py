@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import defaultdict
 from collections.abc import Iterator, Mapping
+from pathlib import Path as Directory
 from typing import Any
 
 from pydantic import ValidationError
@@ -12,6 +13,7 @@ from pydantic_core import ErrorDetails
 from warpsph.scene.checks.common import DeclaredNames, suggestion
 from warpsph.scene.document import Document, Path, dotted, holds, placed
 from warpsph.scene.errors import Problem, SceneError
+from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.rules import rule_at
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import NAME_RULE
@@ -34,12 +36,15 @@ _OPTIONAL_SECTIONS = ("domain", "numerics", "contact", "output", "validation", "
 _STAND_INS: Mapping[str, Any] = {"name": "unnamed", "time": {"end": 1.0, "frame_rate": 1.0}}
 
 
-def validated(document: Document) -> Scene:
-    """The scene of a document; SceneError with all its problems, in the order of the file."""
+def validated(document: Document, directory: Directory) -> Scene:
+    """The scene of a document; SceneError with all its problems, in the order of the file.
+
+    Relative file names count from the directory.
+    """
     try:
-        return Scene.model_validate(document.data)
+        return Scene.model_validate(document.data, context=LoadContext(directory))
     except ValidationError as error:
-        problems = [*_problems(error, document), *_problems_of_the_rest(error, document)]
+        problems = [*_problems(error, document), *_problems_of_the_rest(error, document, directory)]
     raise SceneError(sorted(problems, key=lambda problem: (problem.line is None, problem.line or 0)))
 
 
@@ -140,14 +145,16 @@ def _joined(*parts: str) -> str:
     return "; ".join(part.rstrip(".") for part in parts if part)
 
 
-def _problems_of_the_rest(error: ValidationError, document: Document) -> Iterator[Problem]:
+def _problems_of_the_rest(
+    error: ValidationError, document: Document, directory: Directory
+) -> Iterator[Problem]:
     """Problems across the scene that remain when the refused parts are left out: all appear at once."""
     paths = [_resolved(detail, document.data) for detail in error.errors(include_url=False)]
     rest = _without(paths, document.data) if all(paths) else None
     if rest is None:
         return
     try:
-        Scene.model_validate(rest, context=DeclaredNames.of(document.data))
+        Scene.model_validate(rest, context=LoadContext(directory, DeclaredNames.of(document.data)))
     except ValidationError as further:
         for detail in further.errors(include_url=False):
             cause = detail.get("ctx", {}).get("error")

@@ -45,11 +45,11 @@ def _scene(document: Document, base_directory: Path, overrides: Sequence[str]) -
         allowed = f"the keys {', '.join(Scene.model_fields)}"
         raise SceneError([placed(Problem(message=message, allowed=allowed), document)])
     _apply(overrides, document)
-    scene = validated(document).read_from(base_directory, document)
+    scene = validated(document, base_directory).read_from(base_directory, document)
     problems = [placed(problem, document) for problem in _table_problems(scene)]
     if problems:
         raise SceneError(problems)
-    _try_validation_overrides(scene, document)
+    _try_validation_overrides(scene, document, base_directory)
     return scene
 
 
@@ -64,14 +64,14 @@ def _apply(overrides: Sequence[str], document: Document) -> None:
         raise SceneError(problems)
 
 
-def _try_validation_overrides(scene: Scene, document: Document) -> None:
+def _try_validation_overrides(scene: Scene, document: Document, base_directory: Path) -> None:
     """Refuse overrides of the validation that would fail only when it runs."""
     if scene.validation is None or not scene.validation.set:
         return
     trial = copy.deepcopy(document)
     for key, value in scene.validation.set.items():
         set_value(trial, key.split("."), value, document.place(("validation", "set", key)))
-    validated(trial)
+    validated(trial, base_directory)
 
 
 def _scene_file(path_or_name: str | Path) -> Path:

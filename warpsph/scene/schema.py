@@ -17,6 +17,7 @@ from warpsph.scene.document import Document, placed
 from warpsph.scene.dump import to_yaml
 from warpsph.scene.errors import SceneError
 from warpsph.scene.expressions import Expression, VectorField
+from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
@@ -29,6 +30,7 @@ from warpsph.scene.types import (
     Flag,
     Name,
     NonNegativeReal,
+    Placement,
     PositiveInteger,
     PositiveReal,
     Real,
@@ -119,6 +121,10 @@ class Fluid(SceneModel):
     shape: Shape
     """Where it is at the start."""
 
+    placement: Placement = "lattice"
+    """lattice: particles in the middles of cells. relaxed: those near the surface evened out along it, half a spacing
+    off it, for curved and oblique surfaces. Default: lattice."""
+
     density: PositiveReal
     """Reference density [kg/m3]."""
 
@@ -143,11 +149,17 @@ class Boundary(SceneModel):
     """outside: wall particles lie outside the surface, fluid inside (a tank); inside: layers just inside the
     surface (an obstacle); solid: the whole inside is filled."""
 
+    placement: Literal["auto"] | Placement = "auto"
+    """lattice: particles in the middles of cells. relaxed: those near the surface evened out along it, half a spacing
+    off it. auto: in layers that follow the surface where that is curved or oblique, on the lattice elsewhere and
+    for meshes. Default: auto."""
+
     layers: Literal["auto"] | PositiveInteger = "auto"
     """Layers of wall particles [1]; auto: as many as the support radius needs. Default: auto."""
 
     open: tuple[Face, ...] = ()
-    """Faces of a box that carry no wall: x_min, x_max, y_min, y_max, z_min, z_max. Default: none."""
+    """Faces of a box, or of the box around a mesh, that carry no wall: x_min, x_max, y_min, y_max, z_min, z_max.
+    Default: none."""
 
     slip: Literal["free_slip", "no_slip"] = "free_slip"
     """Tangential condition on the fluid. Default: free_slip."""
@@ -257,7 +269,9 @@ class Scene(SceneModel):
 
     @model_validator(mode="after")
     def _refuse_nonsense(self, info: ValidationInfo) -> Scene:
-        problems = list(scene_problems(self, info.context))
+        context = info.context
+        declared = context.declared if isinstance(context, LoadContext) else None
+        problems = list(scene_problems(self, declared))
         if problems:
             raise SceneError(problems)
         return self

@@ -5,33 +5,16 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
 from typing import Annotated, Literal, Self
 
+import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from warpsph.scene.errors import Problem
+from warpsph.scene.mesh_shape import Mesh
+from warpsph.scene.sections import Corners, Naca, Polygon, Section, checked_corners
+from warpsph.scene.shape_model import ShapeModel
 from warpsph.scene.types import Axis, Components, PositiveReal, Real, SceneModel, Vector, Vector2, Vector3
-
-
-class ShapeModel(SceneModel):
-    """Base of all shapes."""
-
-    def parts(self) -> Iterator[tuple[str, Shape]]:
-        """The shapes that this one is made of, each with its key relative to this shape."""
-        yield from ()
-
-    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
-        """What, beside the length of its vectors, cannot stand in this dimension; keys are relative."""
-        for key, part in self.parts():
-            for problem in part.dimension_problems(dimension):
-                yield replace(problem, key=f"{key}.{problem.key}")
-
-    def _exists_only_in(self, required: int, dimension: int, instead: str) -> Iterator[Problem]:
-        kind = getattr(self, "type")  # noqa: B009 (each shape declares its own literal)
-        if dimension != required:
-            message = f"a {kind} exists only where dimension is {required}"
-            yield Problem.at("type", message, f"{instead} where dimension is {dimension}", kind)
 
 
 class Bounds(SceneModel):
@@ -95,30 +78,16 @@ class Cylinder(ShapeModel):
         return self._exists_only_in(3, dimension, "a sphere (which is a disc)")
 
 
-class Polygon(ShapeModel):
-    """The inside of a closed polygon; two dimensions only."""
-
-    type: Literal["polygon"] = "polygon"
-    points: Annotated[tuple[Vector2, ...], Field(min_length=3)]
-    """Corners in order [m]; the last is joined to the first; edges must not cross or touch."""
-
-    @field_validator("points")
-    @classmethod
-    def _simple(cls, points: tuple[Vector2, ...]) -> tuple[Vector2, ...]:
-        return _checked_polygon(points)
-
-    def dimension_problems(self, dimension: int) -> Iterator[Problem]:
-        return self._exists_only_in(2, dimension, "an extrusion")
-
-
 class Extrusion(ShapeModel):
-    """A prism: a polygon extended along an axis; three dimensions only."""
+    """A prism: a polygon, given by `points` or as a `section`, extended along an axis; three dimensions only."""
 
     type: Literal["extrusion"] = "extrusion"
-    points: Annotated[tuple[Vector2, ...], Field(min_length=3)]
-    """Corners of the cross-section [m]: (y, z) for axis x, (x, z) for axis y, (x, y) for axis z."""
+    points: Corners | None = None
+    """Corners of the cross-section [m]: (y, z) for axis x, (x, z) for axis y, (x, y) for axis z. Default: null."""
+    section: Section | None = None
+    """The cross-section as a figure of the plane, in the same coordinates. Default: null."""
     axis: Axis
-    """Axis along which the polygon is extended."""
+    """Axis along which the cross-section is extended."""
     low: Real
     """Smallest coordinate along the axis [m]."""
     high: Real
@@ -126,8 +95,8 @@ class Extrusion(ShapeModel):
 
     @field_validator("points")
     @classmethod
-    def _simple(cls, points: tuple[Vector2, ...]) -> tuple[Vector2, ...]:
-        return _checked_polygon(points)
+    def _simple(cls, points: tuple[Vector2, ...] | None) -> tuple[Vector2, ...] | None:
+        return checked_corners(points)
 
     @field_validator("high")
     @classmethod
@@ -139,6 +108,17 @@ class Extrusion(ShapeModel):
 
     def dimension_problems(self, dimension: int) -> Iterator[Problem]:
         return self._exists_only_in(3, dimension, "a polygon")
+
+    @model_validator(mode="after")
+    def _one_section(self) -> Self:
+        if (self.points is None) == (self.section is None):
+            raise ValueError("an extrusion needs the points of its cross-section, or a section, and not both")
+        return self
+
+    @property
+    def outline(self) -> np.ndarray:
+        """Corners (n, 2) [m] of the cross-section in order."""
+        return np.array(self.points or ()) if self.section is None else self.section.outline
 
 
 class Plane(ShapeModel):
@@ -250,7 +230,18 @@ class Transform(ShapeModel):
 
 
 Shape = Annotated[
-    Box | Sphere | Cylinder | Polygon | Extrusion | Plane | Union | Intersection | Difference | Transform,
+    Box
+    | Sphere
+    | Cylinder
+    | Polygon
+    | Naca
+    | Extrusion
+    | Plane
+    | Mesh
+    | Union
+    | Intersection
+    | Difference
+    | Transform,
     Field(discriminator="type"),
 ]
 """A solid, chosen by `type`."""
@@ -286,64 +277,3 @@ def _checked_upper_corner(low: Components | None, high: Components) -> Component
         if upper <= lower:
             raise ValueError(f"max must be greater than min in {axis}, but {upper:g} <= {lower:g}")
     return high
-
-
-def _checked_polygon(points: tuple[Vector2, ...]) -> tuple[Vector2, ...]:
-    edges = list(pairwise((*points, points[0])))
-    for index, (start, end) in enumerate(edges):
-        if start == end:
-            follower = (index + 1) % len(points)
-            raise ValueError(f"points {index} and {follower} coincide (the polygon closes by itself)")
-    crossing = _crossing_edges(edges)
-    if crossing is not None:
-        raise ValueError("the polygon cuts or touches itself: edges {} and {} meet".format(*crossing))
-    return points
-
-
-_Edge = tuple[Vector2, Vector2]
-
-
-def _crossing_edges(edges: list[_Edge]) -> tuple[int, int] | None:
-    """Indices of two edges that share more than a common corner; None where the polygon is simple."""
-    order = sorted(range(len(edges)), key=lambda index: min(edges[index][0][0], edges[index][1][0]))
-    for place, i in enumerate(order):
-        right_end = max(edges[i][0][0], edges[i][1][0])
-        for j in order[place + 1 :]:
-            if min(edges[j][0][0], edges[j][1][0]) > right_end:
-                break
-            if _edges_meet(edges, i, j):
-                return min(i, j), max(i, j)
-    return None
-
-
-def _edges_meet(edges: list[_Edge], i: int, j: int) -> bool:
-    if (i + 1) % len(edges) == j:
-        return _folds_back(edges[i], edges[j])
-    if (j + 1) % len(edges) == i:
-        return _folds_back(edges[j], edges[i])
-    (a, b), (c, d) = edges[i], edges[j]
-    sides = (_side(a, b, c), _side(a, b, d), _side(c, d, a), _side(c, d, b))
-    if sides[0] * sides[1] < 0.0 and sides[2] * sides[3] < 0.0:
-        return True
-    return any(
-        side == 0.0 and _within(point, edge)
-        for side, point, edge in zip(sides, (c, d, a, b), ((a, b), (a, b), (c, d), (c, d)), strict=True)
-    )
-
-
-def _folds_back(first: _Edge, second: _Edge) -> bool:
-    """Whether the second of two consecutive edges runs back over the first."""
-    (a, b), (_, c) = first, second
-    backwards = (b[0] - a[0]) * (c[0] - b[0]) + (b[1] - a[1]) * (c[1] - b[1]) < 0.0
-    return backwards and _side(a, b, c) == 0.0
-
-
-def _side(a: Vector2, b: Vector2, point: Vector2) -> float:
-    """Positive to the left of the line from a to b, negative to its right, zero on it."""
-    return (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0])
-
-
-def _within(point: Vector2, edge: _Edge) -> bool:
-    """Whether a point of the edge's line lies between the edge's ends."""
-    (a, b) = edge
-    return all(min(a[k], b[k]) <= point[k] <= max(a[k], b[k]) for k in range(2))

@@ -16,6 +16,7 @@ from warpsph.scene.types import (
     Flag,
     Name,
     NonNegativeReal,
+    Placement,
     PositiveInteger,
     PositiveReal,
     Real,
@@ -124,6 +125,10 @@ class Structure(SceneModel):
 
     shape: Shape
     """Where it is at rest."""
+
+    placement: Placement = "lattice"
+    """lattice: particles in the middles of cells. relaxed: those near the surface evened out along it, half a spacing
+    off it; such a body is softer in bending. Default: lattice."""
 
     material: Material
     """What it is made of."""

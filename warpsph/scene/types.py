@@ -82,6 +82,10 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]*$")]
 NAME_RULE = "a letter, then letters, digits and underscores"
 
 
+Placement = Literal["lattice", "relaxed"]
+"""How particles stand at the start."""
+
+
 class _KnownKernel:
     """Accepts the smoothing kernels that are registered when a scene is made."""
 

@@ -10,7 +10,8 @@ import warp as wp
 
 from warpsph.frame import Frame
 from warpsph.particles.launch import Launcher
-from warpsph.sampling import sample
+from warpsph.sampling import SampledSet, sample
+from warpsph.sampling.report import shape_report
 from warpsph.scene.errors import SceneError
 from warpsph.scene.schema import Scene
 from warpsph.solver.coupled_system import CoupledSystem
@@ -44,9 +45,11 @@ class Simulation:
         self.scene = scene
         self._launcher = Launcher(device or default_device(), threads)
         try:
-            self.system = make_system(scene, self._launcher)
+            sets = sample(scene)
+            self.system = make_system(scene, sets, self._launcher)
         except SceneError as error:
             raise scene.located(error) from None
+        self._shapes = shape_report(scene, sets)
         self._frame_callbacks: list[Callback] = []
         self._step_callbacks: list[Callback] = []
         self.step_count = 0
@@ -196,8 +199,8 @@ class Simulation:
         return self.system.ledger()
 
     def describe(self) -> dict[str, Any]:
-        """Return what runs: sets, counts, passes, fields with unit and bytes, and the limits of the step."""
-        return self.system.describe()
+        """Return what runs: sets and how they represent their shapes, passes, fields with bytes, limits of the step."""
+        return {**self.system.describe(), "shapes": self._shapes}
 
     def save_state(self) -> dict[str, Any]:
         """Return everything that a run needs to go on with the same bits."""
@@ -214,8 +217,8 @@ class Simulation:
             callback(self)
 
 
-def make_system(scene: Scene, launcher: Launcher) -> System:
-    """Sample the particles of a scene and assemble what advances them. Raises SceneError."""
+def make_system(scene: Scene, sets: Sequence[SampledSet], launcher: Launcher) -> System:
+    """Assemble what advances the particles of a scene. Raises SceneError."""
     kind = (
         CoupledSystem
         if scene.fluids and scene.structures
@@ -223,7 +226,7 @@ def make_system(scene: Scene, launcher: Launcher) -> System:
         if scene.fluids
         else StructureSystem
     )
-    return kind(scene, sample(scene), launcher)
+    return kind(scene, sets, launcher)
 
 
 def default_device() -> str:

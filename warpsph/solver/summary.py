@@ -92,6 +92,7 @@ def summarise(
         "threads": sim.threads,
         "spacing_m": sim.scene.spacing,
         "sets": description["sets"],
+        "shapes": description["shapes"],
         "particles": sim.particle_count,
         "removed_particles": sim.removed_count,
         "simulated_s": sim.time,

@@ -68,11 +68,19 @@ def _thin_problems(key: str, spacing: float, boxes: dict[str, Box]) -> Iterator[
 
 
 def _number_problems(key: str, spacing: float, bodies: dict[str, Box]) -> Iterator[Problem]:
-    boxes = bodies.values()
-    number = sum(math.prod(float(length) / spacing for length in high - low) for low, high in boxes)
+    numbers = {
+        name: math.prod(float(length) / spacing for length in high - low)
+        for name, (low, high) in bodies.items()
+    }
+    number = sum(numbers.values())
     if number > MAX_PARTICLES:
-        message = f"fluids and structures need up to {number:.2g} particles"
-        coarser = spacing * (number / MAX_PARTICLES) ** (1.0 / len(next(iter(boxes))[0]))
+        largest = max(numbers, key=lambda name: numbers[name])
+        low, high = bodies[largest]
+        size = " x ".join(f"{length:.4g}" for length in high - low)
+        message = (
+            f"fluids and structures need up to {number:.2g} particles, most of them {largest} of {size} m"
+        )
+        coarser = spacing * (number / MAX_PARTICLES) ** (1.0 / len(low))
         yield Problem.at(key, message, f"{MAX_PARTICLES} particles: at least {coarser:.3g} m", spacing)
 
 

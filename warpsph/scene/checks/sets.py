@@ -62,6 +62,9 @@ def boundary_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
         for index, motion in enumerate(boundary.motion):
             yield from prefixed(f"{key}.motion.{index}", motion.dimension_problems(scene.dimension))
         yield from _open_face_problems(boundary, scene.dimension, f"{key}.open")
+        if boundary.shape.type == "plane" and boundary.placement != "auto":
+            message = "layers follow a plane without it"
+            yield Problem.at(f"{key}.placement", message, "auto", boundary.placement)
         if boundary.slip == "no_slip" and scene.numerics.viscosity.type == "none":
             message = "a fluid without viscosity cannot stick to a wall"
             yield Problem.at(f"{key}.slip", message, "free_slip, or a numerics.viscosity", boundary.slip)
@@ -71,9 +74,9 @@ def _open_face_problems(boundary: Boundary, dimension: int, key: str) -> Iterato
     if not boundary.open:
         return
     faces = [f"{axis}_{end}" for axis in AXES[:dimension] for end in ("min", "max")]
-    if boundary.shape.type != "box":
+    if boundary.shape.type not in ("box", "mesh"):
         message = f"a {boundary.shape.type} has no faces to open"
-        yield Problem.at(key, message, "open only where shape is a box", list(boundary.open))
+        yield Problem.at(key, message, "open only where shape is a box or a mesh", list(boundary.open))
     elif boundary.side == "solid":
         yield Problem.at(key, "a solid has no faces to open", "side: outside or inside", list(boundary.open))
     elif set(boundary.open) >= set(faces):
