@@ -82,6 +82,7 @@ OBJECTS = (
     ("numerics.structure", "StructureNumerics"),
     ("contact", "Contact"),
     ("output", "Output"),
+    ("accuracy", "Accuracy"),
     ("validation", "Validation"),
 )
 UNIONS = (
@@ -106,6 +107,7 @@ UNIONS = (
 PARTS = (
     ("Bounds", "`bounds` of a plane, `domain.kill_box`", "Bounds"),
     ("Rotation", "`rotate` of a transform", "Rotation"),
+    ("Figure", "`accuracy.quantity`", "Figure"),
     ("Table in the scene", "`table` of a series reference", "InlineTable"),
     ("Table in a file", "`table` of a series reference", "FileTable"),
     ("Profile in the scene", "`table` of a profile reference", "InlineProfile"),

@@ -9,7 +9,7 @@ import numpy as np
 
 from warpsph.comparison.limits import unit_of, window_of
 from warpsph.comparison.row import Comparison, History, relative_errors
-from warpsph.scene.references import FeatureReference, bound_at
+from warpsph.scene.references import FeatureReference, Figure, bound_at
 from warpsph.scene.schema import Scene
 
 PASSAGE_MARGIN = 0.25
@@ -18,8 +18,7 @@ PASSAGE_MARGIN = 0.25
 
 def compare_feature(name: str, reference: FeatureReference, scene: Scene, history: History) -> Comparison:
     """The row of a feature reference; without a `value` the figure is reported and judged by nothing."""
-    time, column, reached = window_of(reference, scene, history)
-    figure = feature_of(reference, time, column) if reached else math.nan
+    figure, reached = figure_of(reference, scene, history)
     expected = math.nan if reference.value is None else reference.value
     error = relative_errors(np.array([figure]), np.array([expected]), reference.relative_to)[0]
     return Comparison(
@@ -36,23 +35,29 @@ def compare_feature(name: str, reference: FeatureReference, scene: Scene, histor
     )
 
 
-def feature_of(reference: FeatureReference, time: np.ndarray, column: np.ndarray) -> float:
+def figure_of(figure: Figure, scene: Scene, history: History) -> tuple[float, bool]:
+    """The figure of a run, not a number where there is none, and whether the run reached the end of its window."""
+    time, column, reached = window_of(figure, scene, history)
+    return (feature_of(figure, time, column) if reached else math.nan), reached
+
+
+def feature_of(figure: Figure, time: np.ndarray, column: np.ndarray) -> float:
     """The figure from times [s] and values, each of shape (n,); not a number where there is none."""
     if time.size == 0 or not np.isfinite(column).all():
         return math.nan
-    if reference.average is not None:
-        column = moving_mean(time, column, reference.average)
-    if reference.feature in THRESHOLD_FEATURES:
-        return THRESHOLD_FEATURES[reference.feature](time, column, float(reference.threshold or 0.0))
-    return FEATURES[reference.feature](time, column)
+    if figure.average is not None:
+        column = moving_mean(time, column, figure.average)
+    if figure.feature in THRESHOLD_FEATURES:
+        return THRESHOLD_FEATURES[figure.feature](time, column, float(figure.threshold or 0.0))
+    return FEATURES[figure.feature](time, column)
 
 
-def feature_unit(reference: FeatureReference) -> str:
+def feature_unit(figure: Figure) -> str:
     """Unit of the figure, from that of the column."""
-    unit = unit_of(reference.column)
+    unit = unit_of(figure.column)
     units = {"integral": f"{unit} s", "decay_rate": "1/s"}
     times = dict.fromkeys(("arrival", "first_peak_time", "period", "maximum_time", "minimum_time"), "s")
-    return (units | times).get(reference.feature, unit)
+    return (units | times).get(figure.feature, unit)
 
 
 def moving_mean(time: np.ndarray, column: np.ndarray, duration: float) -> np.ndarray:

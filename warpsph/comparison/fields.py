@@ -79,6 +79,11 @@ def compare_field(
     )
 
 
+def field_unit(field: str) -> str:
+    """Unit of a compared field."""
+    return {"pressure": "Pa", "density": "kg/m3"}.get(field, "m/s")
+
+
 def _compared(reference: FrameReference) -> str:
     if isinstance(reference, FieldReference):
         return f"{reference.set}.{reference.field}"

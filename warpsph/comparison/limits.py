@@ -8,7 +8,7 @@ import numpy as np
 
 from warpsph.comparison.row import Comparison, History, column_of
 from warpsph.output.probes_csv import TIME_COLUMN
-from warpsph.scene.references import FeatureReference, LimitReference
+from warpsph.scene.references import Figure, LimitReference
 from warpsph.scene.schema import Scene
 
 
@@ -36,7 +36,7 @@ def compare_limit(name: str, reference: LimitReference, scene: Scene, history: H
 
 
 def window_of(
-    reference: LimitReference | FeatureReference, scene: Scene, history: History
+    reference: LimitReference | Figure, scene: Scene, history: History
 ) -> tuple[np.ndarray, np.ndarray, bool]:
     """Times [s] and values of the column within the window, and whether the run reached its end."""
     first, last = _window(reference, scene)
@@ -44,11 +44,11 @@ def window_of(
     slack = 1e-9 * max(1.0, last)
     within = (time >= first - slack) & (time <= last + slack)
     reached = time.size > 0 and time[-1] >= last - _sampling_interval(scene) - slack
-    unroll = reference.unroll if isinstance(reference, FeatureReference) else None
+    unroll = reference.unroll if isinstance(reference, Figure) else None
     return time[within], column_of(history, reference.column, unroll)[within], bool(reached)
 
 
-def _window(reference: LimitReference | FeatureReference, scene: Scene) -> tuple[float, float]:
+def _window(reference: LimitReference | Figure, scene: Scene) -> tuple[float, float]:
     return reference.window or (0.0, scene.time.end)
 
 

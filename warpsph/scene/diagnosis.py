@@ -32,7 +32,7 @@ _MESSAGES: Mapping[str, str] = {
     "string_pattern_mismatch": "this is not spelled as a name must be",
 }
 _NAMED_SECTIONS = ("fluids", "boundaries", "structures", "probes", "references")
-_OPTIONAL_SECTIONS = ("domain", "numerics", "contact", "output", "validation", "description")
+_OPTIONAL_SECTIONS = ("domain", "numerics", "contact", "output", "accuracy", "validation", "description")
 _STAND_INS: Mapping[str, Any] = {"name": "unnamed", "time": {"end": 1.0, "frame_rate": 1.0}}
 
 

@@ -203,10 +203,9 @@ class ProfileReference(_Compared):
     """Times of comparison [s], each at the nearest frame; null: the end. Default: null."""
 
 
-class FeatureReference(_Reference):
-    """One figure that is taken from a probe column, against a value or against the next coarser resolution."""
+class Figure(SceneModel):
+    """One figure that is taken from a probe column."""
 
-    type: Literal["feature"] = "feature"
     column: str
     """The probe column, such as energy.kinetic[J]."""
 
@@ -230,6 +229,11 @@ class FeatureReference(_Reference):
     threshold: Real | None = None
     """Value of the column that counts as arrival; for arrival and first peaks. Default: null."""
 
+
+class FeatureReference(Figure, _Reference):
+    """One figure that is taken from a probe column, against a value or against the next coarser resolution."""
+
+    type: Literal["feature"] = "feature"
     value: Real | None = None
     """What the figure should be, in its unit; null: reported only. Default: null."""
 

@@ -12,6 +12,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, PrivateAttr, ValidationInfo, model_validator
 
+from warpsph.scene.accuracy import Accuracy
 from warpsph.scene.checks import scene_problems
 from warpsph.scene.document import Document, placed
 from warpsph.scene.dump import to_yaml
@@ -260,6 +261,9 @@ class Scene(SceneModel):
 
     references: Annotated[Mapping[Name, Reference], _NAMED] = {}
     """What the result is compared with, by name. Default: none."""
+
+    accuracy: Accuracy | None = None
+    """The accuracy that is asked for, from which `warpsph plan` finds the spacing; null: none. Default: null."""
 
     validation: Validation | None = None
     """How `warpsph validate` runs this scene; null: as it stands. Default: null."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 from typing import TYPE_CHECKING, Any
 
+from warpsph.scene.checks.accuracy import accuracy_problems
 from warpsph.scene.checks.common import DeclaredNames
 from warpsph.scene.checks.geometry import geometry_problems
 from warpsph.scene.checks.references import probe_problems, reference_problems
@@ -32,6 +33,7 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
         "boundaries": scene.boundaries,
         "structures": scene.structures,
         "probes": scene.probes,
+        "references": scene.references,
     }
     names = declared or DeclaredNames.of(sections)
     of_places = [
@@ -48,6 +50,7 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
     yield from settings_problems(scene)
     yield from probe_problems(scene, names)
     yield from reference_problems(scene, names)
+    yield from accuracy_problems(scene, names)
 
 
 def _value_problems(value: Any, dimension: int, key: str) -> Iterator[Problem]:

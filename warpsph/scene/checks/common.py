@@ -20,6 +20,7 @@ class DeclaredNames:
     boundaries: frozenset[str]
     structures: frozenset[str]
     probes: frozenset[str]
+    references: frozenset[str]
 
     @classmethod
     def of(cls, sections: Mapping[str, Any]) -> DeclaredNames:
@@ -29,7 +30,7 @@ class DeclaredNames:
             value = sections.get(section)
             return frozenset(value) if isinstance(value, Mapping) else frozenset()
 
-        return cls(*map(names, ("fluids", "boundaries", "structures", "probes")))
+        return cls(*map(names, ("fluids", "boundaries", "structures", "probes", "references")))
 
 
 def unknown_name(key: str, kind: str, name: str, known: Iterable[str]) -> Problem:

@@ -49,6 +49,9 @@ def _spacings(scene: Scene) -> Iterator[tuple[str, float]]:
         for tier in ("resolutions", "quick"):
             for index, spacing in enumerate(getattr(scene.validation, tier)):
                 yield f"validation.{tier}.{index}", spacing
+    if scene.accuracy is not None:
+        for index, spacing in enumerate(scene.accuracy.pilots or ()):
+            yield f"accuracy.pilots.{index}", spacing
 
 
 def _endless_problems(bodies: dict[str, Box]) -> Iterator[Problem]:

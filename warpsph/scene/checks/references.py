@@ -33,6 +33,7 @@ from warpsph.scene.probes import (
 from warpsph.scene.references import (
     FeatureReference,
     FieldReference,
+    Figure,
     InlineProfile,
     InlineTable,
     LimitReference,
@@ -169,7 +170,7 @@ def reference_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             case ProfileReference():
                 yield from _profile_problems(reference, scene, key)
             case FeatureReference():
-                yield from _column_problems(reference.column, scene, names, key)
+                yield from figure_problems(reference, scene, names, key)
                 yield from _feature_problems(reference, key)
 
 
@@ -215,16 +216,19 @@ def _window_problems(window: tuple[float, float] | None, key: str) -> Iterator[P
         yield Problem.at(f"{key}.window", message, "[first, last] with first < last", list(window))
 
 
+def figure_problems(figure: Figure, scene: Scene, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    """Figures of columns that the scene does not have, and windows and thresholds that make no sense."""
+    yield from _column_problems(figure.column, scene, names, key)
+    yield from _window_problems(figure.window, key)
+    needs_threshold = figure.feature in ("arrival", "first_peak", "first_peak_time")
+    if needs_threshold and figure.threshold is None:
+        yield Problem.at(f"{key}.threshold", f"{figure.feature} needs it", "a number, in the column's unit")
+    if not needs_threshold and figure.threshold is not None:
+        message = f"{figure.feature} has no threshold"
+        yield Problem.at(f"{key}.threshold", message, "null", figure.threshold)
+
+
 def _feature_problems(reference: FeatureReference, key: str) -> Iterator[Problem]:
-    yield from _window_problems(reference.window, key)
-    needs_threshold = reference.feature in ("arrival", "first_peak", "first_peak_time")
-    if needs_threshold and reference.threshold is None:
-        yield Problem.at(
-            f"{key}.threshold", f"{reference.feature} needs it", "a number, in the column's unit"
-        )
-    if not needs_threshold and reference.threshold is not None:
-        message = f"{reference.feature} has no threshold"
-        yield Problem.at(f"{key}.threshold", message, "null", reference.threshold)
     if reference.bound is not None and reference.value is None:
         yield Problem.at(f"{key}.bound", "there is no value that it bounds", "a value, or convergence")
     if reference.convergence is not None and reference.value is not None:
