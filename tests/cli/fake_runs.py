@@ -90,12 +90,23 @@ def summary(*rows: dict[str, Any]) -> dict[str, Any]:
         "simulated_s": 0.02,
         "wall_s": 75.0,
         "particle_steps_per_second": 2.5e6,
+        "bytes_per_particle": 800.0,
         "steps": {"count": 100, "sub_steps": 0, "mean_s": 2e-4, "limited_by": {"acoustic": 97, "frame": 3}},
         "versions": {"warpsph": "0.1.0"},
         "ledger": {"start": LEDGER, "end": LEDGER},
         "warnings": ["the scene [of a test] is tiny"],
         "references": list(rows or (REFERENCE_ROW,)),
     }
+
+
+def converging(p: float, slope: float = 0.5) -> Callable[[Path], dict[str, Any]]:
+    """An end of a run in a directory named by its spacing h, in which the front stands at 1 + slope h^p."""
+
+    def end(directory: Path) -> dict[str, Any]:
+        value = 1.0 + slope * float(directory.name) ** p
+        return summary({**REFERENCE_ROW, "value": value, "samples": [{"time": 0.02, "value": value}]})
+
+    return end
 
 
 def diverged() -> SimulationDiverged:

@@ -55,12 +55,19 @@ def test_two_spacings_assume_the_first_order_and_a_large_factor_of_safety() -> N
 
 
 def test_no_order_above_the_formal_one_is_relied_on() -> None:
-    """f = 7 + 3 h^4: the error with order 2 is the change over r^2 - 1, larger than the true one."""
+    """f = 7 + 3 h^4: the error with order 1 is the change over r - 1, and the factor of safety is 3."""
     found = extrapolate(UNEQUAL, figures(UNEQUAL, 4.0))
     assert found.observed == pytest.approx(4.0)
-    assert found.order == 2.0
-    assert found.error == pytest.approx(3.0 * ((0.1 / 1.5) ** 4 - 0.05**4) / ((4.0 / 3.0) ** 2 - 1.0))
+    assert found.order == 1.0
+    assert found.error == pytest.approx(3.0 * ((0.1 / 1.5) ** 4 - 0.05**4) / (4.0 / 3.0 - 1.0))
     assert found.error > 3.0 * 0.05**4
+    assert found.uncertainty == pytest.approx(3.0 * found.error)
+
+
+def test_an_order_just_above_the_formal_one_is_the_formal_one() -> None:
+    found = extrapolate(UNEQUAL, figures(UNEQUAL, 2.05))
+    assert found.order == 2.0
+    assert found.uncertainty == pytest.approx(1.25 * found.error)
 
 
 @pytest.mark.parametrize(

@@ -8,6 +8,7 @@ import typer
 
 from warpsph import __version__
 from warpsph.cli.info import info
+from warpsph.cli.plan import plan
 from warpsph.cli.render import render
 from warpsph.cli.run import run
 from warpsph.cli.scenes import scenes
@@ -20,7 +21,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, info, scenes, validate, schema, render):
+for command in (run, plan, info, scenes, validate, schema, render):
     app.command()(command)
 
 

@@ -118,24 +118,33 @@ def _sufficient_spacing(pilots: Sequence[Pilot], found: Extrapolation, allowed: 
     coarsest, finest = pilots[0].spacing, pilots[-1].spacing
     if found.order is None:
         return finest if found.uncertainty <= allowed else None
-    if found.uncertainty == 0.0:
-        return coarsest
+    for halves in range(2, math.floor(2.0 * coarsest / finest * (1.0 + 1e-9)) + 1):
+        spacing = 2.0 * coarsest / halves
+        if _expected_error(pilots, found, spacing) * found.safety <= allowed:
+            return spacing
     if allowed == 0.0:
         return None
     needed = finest * (allowed / found.uncertainty) ** (1.0 / found.order)
-    halves = math.ceil(2.0 * coarsest / needed * (1.0 - 1e-9))
-    return 2.0 * coarsest / max(halves, 2)
+    return 2.0 * coarsest / math.ceil(2.0 * coarsest / needed * (1.0 - 1e-9))
+
+
+def _expected_error(pilots: Sequence[Pilot], found: Extrapolation, spacing: float) -> float:
+    """Error at a spacing [m], in the unit of the figure: by the power law, but not less than what finer pilots have."""
+    if found.order is None:
+        return found.error
+    finer = (found.error_of(pilot.figure) for pilot in pilots if pilot.spacing <= spacing * (1.0 + 1e-9))
+    return max(found.error * found.growth(spacing), *(error or 0.0 for error in finer), 0.0)
 
 
 def _proposal(pilots: Sequence[Pilot], found: Extrapolation, spacing: float, scale: float) -> Proposal:
-    growth = 1.0 if found.order is None else found.growth(spacing)
+    error = _expected_error(pilots, found, spacing) / scale
     finest = pilots[-1]
     particles = _continued(pilots, [pilot.particles for pilot in pilots], spacing)
     steps = _continued(pilots, [pilot.steps for pilot in pilots], spacing)
     return Proposal(
         spacing=spacing,
-        error=found.error * growth / scale,
-        uncertainty=found.uncertainty * growth / scale,
+        error=error,
+        uncertainty=error * found.safety,
         particles=particles,
         steps=steps,
         wall_seconds=particles * steps / finest.pace if finest.pace else None,

@@ -19,6 +19,9 @@ ASSUMED_ORDER = 1.0
 SMALLEST_ORDER = 0.5
 """Below it a figure is not yet on its way to a limit (Oberkampf & Roy 2010)."""
 
+LARGEST_ORDER = FORMAL_ORDER + 0.1
+"""Above it the errors of two terms cancel at these spacings by chance (Eca & Hoekstra 2014)."""
+
 OBSERVED_SAFETY, ASSUMED_SAFETY = 1.25, 3.0
 """Factors of safety of the grid convergence index with an observed and with an assumed order (Roache 1994)."""
 
@@ -36,7 +39,7 @@ class Extrapolation:
     """What values at several spacings say about the one at the finest spacing [m].
 
     `error` and `uncertainty` are in the unit of the figure, root mean squares where it has several values. The
-    uncertainty is the grid convergence index: the error with its factor of safety. `order` is the exponent that both
+    uncertainty is the grid convergence index: the error times the factor of `safety`. `order` is the exponent that both
     rest on, `observed` that of three spacings; both are None where there is none. `limit` is the figure without
     discretisation, shape (values,), None where there is no order.
     """
@@ -45,10 +48,15 @@ class Extrapolation:
     behaviour: Behaviour
     scale: float
     error: float
-    uncertainty: float
+    safety: float
     order: float | None = None
     observed: float | None = None
     limit: np.ndarray | None = None
+
+    @property
+    def uncertainty(self) -> float:
+        """The grid convergence index, in the unit of the figure."""
+        return self.error * self.safety
 
     @property
     def converges(self) -> bool:
@@ -95,7 +103,9 @@ def extrapolate(spacings: Sequence[float], figures: Sequence[np.ndarray]) -> Ext
     scale = root_mean_square(figures[-1])
     sizes = [root_mean_square(change) for change in changes]
     if max(sizes) <= ROUNDING * scale:
-        return Extrapolation(spacings[-1], "equal", scale, 0.0, 0.0, ASSUMED_ORDER, limit=figures[-1])
+        return Extrapolation(
+            spacings[-1], "equal", scale, 0.0, ASSUMED_SAFETY, ASSUMED_ORDER, limit=figures[-1]
+        )
     if len(changes) == 1:
         return _with_order(spacings[-1], figures[-1], changes[-1], ratios[-1], None)
     observed = None
@@ -127,8 +137,9 @@ def observed_richardson_order(change_ratio: float, coarse_ratio: float, fine_rat
 def _with_order(
     spacing: float, finest: np.ndarray, change: np.ndarray, ratio: float, observed: float | None
 ) -> Extrapolation:
-    """Orders above the formal one come from errors that change their sign, and promise nothing: they are cut."""
-    order = ASSUMED_ORDER if observed is None else min(observed, FORMAL_ORDER)
+    """An order above the formal one promises nothing, so that it is replaced by the assumed one."""
+    believed = observed if observed is not None and observed <= LARGEST_ORDER else None
+    order = ASSUMED_ORDER if believed is None else min(believed, FORMAL_ORDER)
     correction = change / (ratio**order - 1.0)
     error = root_mean_square(correction)
     return Extrapolation(
@@ -136,7 +147,7 @@ def _with_order(
         behaviour="order assumed" if observed is None else "converging",
         scale=root_mean_square(finest),
         error=error,
-        uncertainty=error * (ASSUMED_SAFETY if observed is None else OBSERVED_SAFETY),
+        safety=ASSUMED_SAFETY if believed is None else OBSERVED_SAFETY,
         order=order,
         observed=observed,
         limit=finest + correction,
@@ -151,4 +162,4 @@ def _without_order(
     error = spread / (spacings[0] / spacings[-1] - 1.0)
     behaviour: Behaviour = "oscillating" if observed is None else "slow" if observed > 0.0 else "diverging"
     scale = root_mean_square(figures[-1])
-    return Extrapolation(spacings[-1], behaviour, scale, error, ASSUMED_SAFETY * error, observed=observed)
+    return Extrapolation(spacings[-1], behaviour, scale, error, ASSUMED_SAFETY, observed=observed)
