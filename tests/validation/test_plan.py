@@ -18,7 +18,7 @@ def pilots(p: float = 2.0, slope: float = 40.0, count: int = 3) -> list[Pilot]:
 
 
 def pilot_at(h: float, value: float) -> Pilot:
-    return Pilot(h, np.array([value]), 5.0, round(h**-3), round(100 / h), 1e6, 800.0)
+    return Pilot(h, np.array([value]), 5.0, round(h**-3), round(100 / h), 800.0)
 
 
 def test_spacing_is_the_coarsest_whose_uncertainty_meets_the_target() -> None:
@@ -39,7 +39,7 @@ def test_cost_follows_the_power_laws_of_the_pilots() -> None:
     assert proposal is not None
     assert proposal.particles == pytest.approx(0.04**-3, rel=1e-3)
     assert proposal.steps == pytest.approx(100 / 0.04, rel=1e-3)
-    assert proposal.wall_seconds == pytest.approx(proposal.particles * proposal.steps / 1e6)
+    assert proposal.wall_seconds == pytest.approx(5.0 * (0.05 / 0.04) ** 4, rel=1e-3)
     assert proposal.memory_bytes == pytest.approx(800.0 * proposal.particles)
 
 

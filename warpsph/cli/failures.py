@@ -82,6 +82,6 @@ def _bad_input() -> tuple[type[Exception], ...]:
 def _failed_runs() -> tuple[type[Exception], ...]:
     from warpsph.output.errors import OutputError
     from warpsph.solver.errors import SimulationDiverged
-    from warpsph.validation.pilots import NoFigure
+    from warpsph.validation.pilots import PlanError
 
-    return OutputError, SimulationDiverged, NoFigure
+    return OutputError, SimulationDiverged, PlanError

@@ -183,11 +183,19 @@ def proposal_in_words(made: Plan) -> str:
 
     proposal = made.proposal
     assert proposal is not None
-    wall = "-" if proposal.wall_seconds is None else duration(proposal.wall_seconds)
     return (
         f"spacing {proposal.spacing:.4g} m; expected error {_percent(proposal.error)}, with its uncertainty at most "
         f"{_percent(proposal.uncertainty)}; about {proposal.particles:.3g} particles, {proposal.steps:.3g} steps, "
-        f"{wall}, {size_in_words(proposal.memory_bytes)}"
+        f"{duration(proposal.wall_seconds)}, {size_in_words(proposal.memory_bytes)}"
+    )
+
+
+def plan_in_words(record: Mapping[str, Any]) -> str:
+    """The plan that a run follows, from its record: which spacing, for what."""
+    proposal = record["proposal"]
+    return (
+        f"spacing {proposal['spacing']:.4g} m for {record['quantity']} within {_percent(record['within'])}; "
+        f"expected error {_percent(proposal['error'])}, at most {_percent(proposal['uncertainty'])}"
     )
 
 

@@ -18,6 +18,17 @@ if TYPE_CHECKING:
 Resume = Annotated[bool, typer.Option("--resume", help="Go on from the checkpoint in the run directory.")]
 Frames = Annotated[int | None, typer.Option(min=1, help="Stop after this many frames.")]
 Quiet = Annotated[bool, typer.Option("--quiet", help="Print nothing but errors.")]
+PlanFirst = Annotated[
+    bool,
+    typer.Option("--plan", help="Take the spacing that the scene's accuracy needs, as `warpsph plan` does."),
+]
+EstimateError = Annotated[
+    bool,
+    typer.Option(
+        "--estimate-error",
+        help="Run twice the spacing too, and state the discretisation error of every reference.",
+    ),
+]
 Render = Annotated[
     bool, typer.Option("--render", help="Draw the frames at the end, as `warpsph render` does.")
 ]
@@ -30,6 +41,8 @@ def run(
     device: Device = None,
     threads: Threads = None,
     overrides: Overrides = None,
+    plan: PlanFirst = False,
+    estimate_error: EstimateError = False,
     resume: Resume = False,
     frames: Frames = None,
     render: Render = False,
@@ -42,26 +55,29 @@ def run(
     end, 1 if it failed, 2 if the scene or the request is wrong, 130 after Ctrl-C. What a run has written so
     far stays readable.
     """
+    from warpsph.cli.coarse_runs import prepared
     from warpsph.cli.consoles import plain_console
     from warpsph.cli.extras import require_render_extra
     from warpsph.cli.kept import stating_what_is_kept
     from warpsph.cli.progress import reporter_for
     from warpsph.cli.summary import show_summary
     from warpsph.cli.warp_runtime import start_warp
-    from warpsph.scene import load_scene
 
-    loaded = load_scene(scene, overrides or ())
     if render:
         require_render_extra()
-    directory = out or default_directory(loaded)
-    again = resume_command(scene, directory, overrides or (), device, threads)
     console = plain_console(quiet=quiet)
+    before = prepared(scene, overrides or (), out, plan=plan, estimate_error=estimate_error)
+    directory, flags = before.directory, ["--plan"] * plan + ["--estimate-error"] * estimate_error
+    again = resume_command(scene, directory, overrides or (), device, threads, flags)
+    if before.coarse:
+        start_warp(device, verbose=verbose)
+        before = before.run_coarse(console, device=device, threads=threads, quiet=quiet)
     with reporter_for(console, quiet=quiet) as reporter, stating_what_is_kept(directory, again, reporter):
         start_warp(device, verbose=verbose)
         from warpsph.solver.run import run_scene
 
-        summary = run_scene(
-            loaded,
+        finished = run_scene(
+            before.scene,
             directory,
             device=device,
             threads=threads,
@@ -69,7 +85,10 @@ def run(
             frames=frames,
             reporter=reporter,
         )
+    summary = before.completed(finished)
     show_summary(console, directory, summary)
+    if before.remark:
+        console.print(before.remark, soft_wrap=True)
     if render:
         from warpsph.cli.render import draw
 
@@ -83,7 +102,12 @@ def default_directory(scene: Scene) -> Path:
 
 
 def resume_command(
-    scene: str, directory: Path, overrides: Sequence[str], device: str | None, threads: int | None
+    scene: str,
+    directory: Path,
+    overrides: Sequence[str],
+    device: str | None,
+    threads: int | None,
+    flags: Sequence[str] = (),
 ) -> str:
     """The command that goes on with a run that was cut short."""
     words = ["warpsph", "run", scene, "--out", str(directory)]
@@ -93,4 +117,4 @@ def resume_command(
         words += ["--device", device]
     if threads is not None:
         words += ["--threads", str(threads)]
-    return shlex.join([*words, "--resume"])
+    return shlex.join([*words, *flags, "--resume"])

@@ -9,8 +9,9 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
+from warpsph.cli.plan import plan_in_words
 from warpsph.cli.progress import duration, rate_in_words
-from warpsph.cli.tables import comparison_table
+from warpsph.cli.tables import comparison_table, estimate_table
 
 Summary = Mapping[str, Any]
 
@@ -26,11 +27,16 @@ def show_summary(console: Console, directory: Path, summary: Summary) -> None:
     if summary["references"]:
         console.print()
         console.print(comparison_table(summary["references"]))
+    if summary.get("discretisation_error"):
+        console.print()
+        console.print(estimate_table(summary["discretisation_error"]))
 
 
 def _lines(directory: Path, summary: Summary) -> Iterator[tuple[str, str]]:
     files = sorted(path.name for path in directory.iterdir() if path.is_file())
     yield "directory", str(directory)
+    if summary.get("plan"):
+        yield "plan", plan_in_words(summary["plan"])
     yield "files", ", ".join(files)
     particles = f"{summary['particles']} particles" + _removed(summary["removed_particles"])
     yield "run", f"{summary['frames']} frames to t = {summary['simulated_s']:.6g} s, {particles}"

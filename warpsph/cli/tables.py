@@ -29,6 +29,28 @@ def comparison_table(rows: Iterable[Row]) -> Group:
     return Group(table, *_remarks(rows))
 
 
+def estimate_table(records: Iterable[Row]) -> Table:
+    """The discretisation error of each quantity of one run, with its uncertainty and the order behind it."""
+    columns = ("quantity", "value", "error", "at most", "order")
+    title = "discretisation error, estimated"
+    table = Table(*columns, title=title, title_justify="left", box=None, pad_edge=False)
+    for record in records:
+        table.add_row(
+            record["quantity"],
+            _number(record["value"]),
+            _error(record["relative_error"], record),
+            _error(record["relative_uncertainty"], record),
+            record.get("note") or _order(record),
+        )
+    return table
+
+
+def _order(record: Row) -> str:
+    if record["order"] is None:
+        return f"none: {record['behaviour']}"
+    return f"{record['order']:.2f} {record['order_is']}"
+
+
 def validation_table(results: Sequence[CaseResult]) -> Group:
     """Error and cost of every quantity at every resolution, with the observed order of convergence."""
     rows = [row for result in results for row in result.rows]

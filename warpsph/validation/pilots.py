@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,8 +22,8 @@ from warpsph.validation.plan import Pilot, Plan, pilot_spacings, plan_from
 from warpsph.validation.runner import RunScene
 
 
-class NoFigure(Exception):
-    """A run came to its end without a value of the quantity; the text says which."""
+class PlanError(Exception):
+    """Pilots that came to their ends allow no plan; the text says why."""
 
 
 @dataclass(frozen=True)
@@ -74,10 +74,16 @@ def coarser_scenes(scene: str, overrides: Sequence[str], spacings: Sequence[floa
         try:
             scenes.append(load_scene(scene, every))
         except SceneError as error:
-            problems.extend(error.problems)
+            problems.extend(_by_its_spacing(problem, spacing) for problem in error.problems)
     if problems:
         raise SceneError(unique(problems))
     return tuple(scenes)
+
+
+def _by_its_spacing(problem: Problem, spacing: float) -> Problem:
+    """The problem of a spacing that nobody has written, by what brings it."""
+    given = problem.file != f"--set spacing={spacing!r}"
+    return problem if given else replace(problem, file=f"the coarse run at {spacing:g} m")
 
 
 def pilot_directory(directory: Path, scene: Scene) -> Path:
@@ -95,7 +101,7 @@ def run_pilots(scenes: Sequence[Scene], directory: Path, run_scene: RunScene) ->
 
 
 def plan_of(accuracy: Accuracy, runs: Sequence[FinishedRun]) -> Plan:
-    """The plan that the pilots allow. Raises NoFigure where a pilot has no value of the quantity."""
+    """The plan that the pilots allow. Raises PlanError where a pilot has no value of the quantity."""
     pilots = tuple(_pilot(accuracy.quantity, run) for run in runs)
     scale = None if accuracy.relative_to == "value" else accuracy.relative_to
     return plan_from(pilots, accuracy.within, scale)
@@ -104,7 +110,7 @@ def plan_of(accuracy: Accuracy, runs: Sequence[FinishedRun]) -> Plan:
 def _pilot(quantity: Quantity, run: FinishedRun) -> Pilot:
     figure, summary = run.values_of(quantity), run.summary
     if not np.isfinite(figure).all():
-        raise NoFigure(
+        raise PlanError(
             f"the pilot at spacing {run.scene.spacing:g} m has no value of {name_of(quantity)}: it is too coarse, or "
             "the run too short for it"
         )
@@ -114,6 +120,5 @@ def _pilot(quantity: Quantity, run: FinishedRun) -> Pilot:
         wall_seconds=summary["wall_s"],
         particles=summary["particles"],
         steps=summary["steps"]["count"],
-        pace=summary["particle_steps_per_second"],
         bytes_per_particle=summary["bytes_per_particle"],
     )

@@ -23,7 +23,7 @@ FAR = 4.0
 class Pilot:
     """A run at one spacing [m]: its figure, shape (values,), and its cost.
 
-    `pace` counts particle-steps a second, `bytes_per_particle` what a particle takes on the device.
+    `bytes_per_particle` is what a particle takes on the device.
     """
 
     spacing: float
@@ -31,7 +31,6 @@ class Pilot:
     wall_seconds: float
     particles: int
     steps: int
-    pace: float | None
     bytes_per_particle: float
 
     @property
@@ -44,7 +43,7 @@ class Pilot:
 class Proposal:
     """A spacing [m] with the relative error to expect, the index that bounds it, and what the run would take.
 
-    `wall_seconds` is the stepping alone, at the pace of the finest pilot.
+    `wall_seconds` grows from that of the finest pilot with the particle-steps.
     """
 
     spacing: float
@@ -52,7 +51,7 @@ class Proposal:
     uncertainty: float
     particles: float
     steps: float
-    wall_seconds: float | None
+    wall_seconds: float
     memory_bytes: float
 
 
@@ -147,7 +146,7 @@ def _proposal(pilots: Sequence[Pilot], found: Extrapolation, spacing: float, sca
         uncertainty=error * found.safety,
         particles=particles,
         steps=steps,
-        wall_seconds=particles * steps / finest.pace if finest.pace else None,
+        wall_seconds=finest.wall_seconds * particles * steps / (finest.particles * finest.steps),
         memory_bytes=particles * finest.bytes_per_particle,
     )
 

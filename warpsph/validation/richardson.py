@@ -64,6 +64,11 @@ class Extrapolation:
         return self.behaviour in CONVERGING
 
     @property
+    def relies_on_observation(self) -> bool:
+        """Whether the order is the observed one, as far as that is believed, and not an assumed one."""
+        return self.order is not None and self.observed is not None and self.observed <= LARGEST_ORDER
+
+    @property
     def order_uncertainty(self) -> float | None:
         """How far the observed order is off the formal one: three values leave no residual to judge it by."""
         return None if self.observed is None else abs(self.observed - FORMAL_ORDER)
