@@ -59,6 +59,7 @@ def test_a_proposal_says_spacing_error_and_cost(
     assert "convergence: observed order 2.00 +- 0.00" in result.stdout
     assert "proposed: spacing 0.125 m; expected error 0.775 %" in result.stdout
     assert "at most 0.969 %" in result.stdout
+    assert "on cpu, 2 threads, 800 kB" in result.stdout
     assert "pilot 3/3 at spacing 0.125 m" in result.stderr
 
 

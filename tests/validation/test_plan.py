@@ -18,7 +18,7 @@ def pilots(p: float = 2.0, slope: float = 40.0, count: int = 3) -> list[Pilot]:
 
 
 def pilot_at(h: float, value: float) -> Pilot:
-    return Pilot(h, np.array([value]), 5.0, round(h**-3), round(100 / h), 800.0)
+    return Pilot(h, np.array([value]), 5.0, round(h**-3), round(100 / h), 800.0, "cpu, 2 threads")
 
 
 def test_spacing_is_the_coarsest_whose_uncertainty_meets_the_target() -> None:

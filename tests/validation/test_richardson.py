@@ -83,7 +83,8 @@ def test_changes_without_an_order_are_named(values: tuple[float, ...], behaviour
     """The error is then the range over h3 / h1 - 1 = 1, with a factor of safety of 3."""
     found = extrapolate((0.4, 0.28, 0.2), [np.array([v]) for v in values])
     assert found.behaviour == behaviour
-    assert not found.converges
+    assert found.order is None
+    assert not found.relies_on_observation
     assert found.error == pytest.approx(max(values) - min(values))
     assert found.uncertainty == pytest.approx(3.0 * found.error)
     with pytest.raises(ValueError, match=behaviour):

@@ -186,7 +186,7 @@ def proposal_in_words(made: Plan) -> str:
     return (
         f"spacing {proposal.spacing:.4g} m; expected error {_percent(proposal.error)}, with its uncertainty at most "
         f"{_percent(proposal.uncertainty)}; about {proposal.particles:.3g} particles, {proposal.steps:.3g} steps, "
-        f"{duration(proposal.wall_seconds)}, {size_in_words(proposal.memory_bytes)}"
+        f"{duration(proposal.wall_seconds)} on {proposal.machine}, {size_in_words(proposal.memory_bytes)}"
     )
 
 

@@ -121,4 +121,5 @@ def _pilot(quantity: Quantity, run: FinishedRun) -> Pilot:
         particles=summary["particles"],
         steps=summary["steps"]["count"],
         bytes_per_particle=summary["bytes_per_particle"],
+        machine=f"{summary['device']}, {summary['threads']} thread{'s' * (summary['threads'] != 1)}",
     )

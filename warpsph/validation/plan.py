@@ -23,7 +23,7 @@ FAR = 4.0
 class Pilot:
     """A run at one spacing [m]: its figure, shape (values,), and its cost.
 
-    `bytes_per_particle` is what a particle takes on the device.
+    `bytes_per_particle` is what a particle takes on the device; `machine` says in words where it ran, maybe earlier.
     """
 
     spacing: float
@@ -32,6 +32,7 @@ class Pilot:
     particles: int
     steps: int
     bytes_per_particle: float
+    machine: str
 
     @property
     def memory_bytes(self) -> float:
@@ -41,9 +42,9 @@ class Pilot:
 
 @dataclass(frozen=True)
 class Proposal:
-    """A spacing [m] with the relative error to expect, the index that bounds it, and what the run would take.
+    """A spacing [m] with the relative error to expect, its convergence index, and what the run would take.
 
-    `wall_seconds` grows from that of the finest pilot with the particle-steps.
+    `wall_seconds` grows from that of the finest pilot with the particle-steps, on its `machine`.
     """
 
     spacing: float
@@ -53,6 +54,7 @@ class Proposal:
     steps: float
     wall_seconds: float
     memory_bytes: float
+    machine: str
 
 
 @dataclass(frozen=True)
@@ -148,6 +150,7 @@ def _proposal(pilots: Sequence[Pilot], found: Extrapolation, spacing: float, sca
         steps=steps,
         wall_seconds=finest.wall_seconds * particles * steps / (finest.particles * finest.steps),
         memory_bytes=particles * finest.bytes_per_particle,
+        machine=finest.machine,
     )
 
 
@@ -200,6 +203,7 @@ def _pilot_record(pilot: Pilot, error: float | None) -> dict[str, Any]:
         "value": plain_figure(pilot.figure),
         "error": error,
         "wall_seconds": pilot.wall_seconds,
+        "machine": pilot.machine,
         "particles": pilot.particles,
         "steps": pilot.steps,
         "memory_bytes": pilot.memory_bytes,

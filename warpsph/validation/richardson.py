@@ -29,7 +29,6 @@ ROUNDING = 1e-9
 """Relative differences below it say nothing about convergence."""
 
 Behaviour = Literal["converging", "order assumed", "equal", "oscillating", "diverging", "slow"]
-CONVERGING: tuple[Behaviour, ...] = ("converging", "order assumed", "equal")
 
 _LARGEST_ORDER = 20.0
 
@@ -57,11 +56,6 @@ class Extrapolation:
     def uncertainty(self) -> float:
         """The grid convergence index, in the unit of the figure."""
         return self.error * self.safety
-
-    @property
-    def converges(self) -> bool:
-        """Whether the error may be expected to fall with the spacing as a power of it."""
-        return self.behaviour in CONVERGING
 
     @property
     def relies_on_observation(self) -> bool:
