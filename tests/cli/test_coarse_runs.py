@@ -59,12 +59,32 @@ def test_a_planned_run_takes_the_spacing_and_says_so(
     result = warpsph("run", scene_file, "--set", half, "--plan", "--estimate-error", "--out", out)
     assert result.exit_code == 0
     assert "plan       spacing 0.08333 m for front within 0.5 %" in result.stdout
+    assert "accuracy   met: estimated error 0.345 %, at most 0.431 %" in result.stdout
     written = summary_of(out)
     assert written["plan"]["proposal"]["spacing"] == pytest.approx(0.5 / 6)
+    assert written["plan"]["outcome"]["met"] is True
     (front,) = written["discretisation_error"]
     assert front["spacings"] == pytest.approx([0.25 / 1.5, 0.125, 0.5 / 6])
     assert (front["order"], front["order_is"]) == (pytest.approx(2.0, abs=1e-6), "observed")
     assert front["error"] == pytest.approx(0.5 * (0.5 / 6) ** 2, rel=1e-5)
+
+
+def test_a_run_that_misses_its_target_says_so(
+    warpsph: Command, scene_file: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Pilots of order 2, and a run that is off by as much as they are: its error follows from all three."""
+
+    def disappoint(directory: Path) -> dict[str, Any]:
+        pilot = directory.parent.name == "pilots"
+        return converging(2.0)(directory if pilot else directory.parent / "0.2")
+
+    monkeypatch.setattr("warpsph.solver.run.run_scene", run_that(disappoint))
+    out, half = tmp_path / "run", ASKING.replace("1%", "0.5%")
+    result = warpsph("run", scene_file, "--set", half, "--plan", "--out", out)
+    assert result.exit_code == 0
+    assert "accuracy   not met: estimated error" in result.stdout
+    assert "accuracy.pilots: [0.1667, 0.1111, 0.08333]" in " ".join(result.stdout.split())
+    assert summary_of(out)["plan"]["outcome"]["met"] is False
 
 
 def test_a_real_planned_run_has_the_proposed_spacing(

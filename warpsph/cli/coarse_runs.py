@@ -15,8 +15,8 @@ from warpsph.comparison.quantities import name_of
 from warpsph.output.run_directory import RunDirectory
 from warpsph.output.summary import write_summary
 from warpsph.scene import Scene, load_scene
-from warpsph.validation.error_estimate import COARSER, error_estimates
-from warpsph.validation.pilots import FinishedRun, PlanError, coarser_scenes, pilot_scenes
+from warpsph.validation.error_estimate import COARSER, error_estimates, outcome
+from warpsph.validation.pilots import FinishedRun, PlanError, accuracy_of, coarser_scenes, pilot_scenes
 from warpsph.validation.plan import Plan
 
 
@@ -55,13 +55,13 @@ class Prepared:
 
     def completed(self, summary: Mapping[str, Any]) -> Mapping[str, Any]:
         """The summary with the plan and with the discretisation errors, also in the directory."""
+        run, others = FinishedRun(self.scene, summary, self.directory), self._at_other_spacings()
         added: dict[str, Any] = {}
         if self.plan is not None:
-            added["plan"] = plan_record(self.scene, self.plan)
+            shown = outcome(self.plan, accuracy_of(self.scene).quantity, run, others)
+            added["plan"] = plan_record(self.scene, self.plan) | {"outcome": shown}
         if self.estimates_error:
-            added["discretisation_error"] = error_estimates(
-                FinishedRun(self.scene, summary, self.directory), self._at_other_spacings()
-            )
+            added["discretisation_error"] = error_estimates(run, others)
         whole = {**summary, **added}
         if added:
             write_summary(RunDirectory(self.directory).summary, whole)

@@ -199,5 +199,17 @@ def plan_in_words(record: Mapping[str, Any]) -> str:
     )
 
 
+def outcome_in_words(record: Mapping[str, Any]) -> str:
+    """What a planned run shows itself of its accuracy, and what to do where that is not what was asked for."""
+    shown, spacing = record["outcome"], record["proposal"]["spacing"]
+    if shown["met"] is None:
+        return "not known: a run has no value of the quantity"
+    words = f"estimated error {_percent(shown['error'])}, at most {_percent(shown['uncertainty'])}"
+    if shown["met"]:
+        return f"met: {words}"
+    pilots = ", ".join(f"{spacing * factor:.4g}" for factor in (2.0, 4.0 / 3.0, 1.0))
+    return f"not met: {words}; plan again from here with accuracy.pilots: [{pilots}]"
+
+
 def _percent(part: float) -> str:
     return f"{100.0 * part:.3g} %"

@@ -9,7 +9,7 @@ from typing import Any
 from rich.console import Console
 from rich.table import Table
 
-from warpsph.cli.plan import plan_in_words
+from warpsph.cli.plan import outcome_in_words, plan_in_words
 from warpsph.cli.progress import duration, rate_in_words
 from warpsph.cli.tables import comparison_table, estimate_table
 
@@ -37,6 +37,7 @@ def _lines(directory: Path, summary: Summary) -> Iterator[tuple[str, str]]:
     yield "directory", str(directory)
     if summary.get("plan"):
         yield "plan", plan_in_words(summary["plan"])
+        yield "accuracy", outcome_in_words(summary["plan"])
     yield "files", ", ".join(files)
     particles = f"{summary['particles']} particles" + _removed(summary["removed_particles"])
     yield "run", f"{summary['frames']} frames to t = {summary['simulated_s']:.6g} s, {particles}"

@@ -12,7 +12,7 @@ from warpsph.comparison.row import finite_or_none
 from warpsph.scene.accuracy import Quantity
 from warpsph.scene.schema import Scene
 from warpsph.validation.pilots import FinishedRun
-from warpsph.validation.plan import plain_figure
+from warpsph.validation.plan import Plan, plain_figure
 from warpsph.validation.richardson import Extrapolation, extrapolate, root_mean_square
 
 COARSER = 2.0
@@ -26,6 +26,24 @@ def error_estimates(run: FinishedRun, others: Sequence[FinishedRun]) -> list[dic
     relative ones are over the root mean square of the run's values. One other run leaves the order to be assumed.
     """
     return [_record(quantity, run, others) for quantity in _quantities(run.scene)]
+
+
+def outcome(
+    plan: Plan, quantity: Quantity, run: FinishedRun, others: Sequence[FinishedRun]
+) -> dict[str, Any]:
+    """Whether a run has the accuracy that it was planned for, by what it shows itself beside its pilots.
+
+    `error` and `uncertainty` are relative to the scale of the plan; all is None where a run has no value.
+    """
+    found = _record(quantity, run, others)
+    if found["error"] is None:
+        return dict.fromkeys(("error", "uncertainty", "met"))
+    uncertainty = found["uncertainty"] / plan.scale
+    return {
+        "error": found["error"] / plan.scale,
+        "uncertainty": uncertainty,
+        "met": uncertainty <= plan.within,
+    }
 
 
 def _quantities(scene: Scene) -> Iterator[Quantity]:
