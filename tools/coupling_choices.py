@@ -43,7 +43,6 @@ CASES = {
     "rolling_tank_deep": (0.002, 0.1),
     "rolling_tank_shallow": (0.002, 0.1),
     "rolling_tank_hanging": (0.002, 0.1),
-    "dam_break_plate_2d": (0.002, 0.36),
     "dam_break_plate_yardstick": (0.0033333333, 0.36),
 }
 """Spacing [m] and end [s] of shipped scenes that are run with one shared step beside their own."""
