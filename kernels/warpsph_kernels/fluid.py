@@ -81,6 +81,9 @@ def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
 
     It changes its sign when a and b are exchanged, which is what conserves momentum to rounding. `v_ab` is the velocity
     difference that viscosity sees, `u_ab` that which a pressure form sees; they differ at walls.
+
+    F, of the order of h^-(dim+2), comes last: in a scene of a micrometre its product with a pressure is beyond single
+    precision, that with a pressure over h is not.
     """
     arithmetic = options.arithmetic
     real, vector = arithmetic.real, arithmetic.vector
@@ -92,10 +95,10 @@ def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     def pair_force(c: constants_type, x_ab: vector, v_ab: vector, u_ab: vector, p_a: real, p_b: real):
         r2 = wp.dot(x_ab, x_ab)
         F = c.slope_norm * slope(wp.sqrt(r2) * c.inverse_h)
-        force = -pressure_term(c, x_ab, u_ab, r2, p_a, p_b) * F * x_ab
+        force = -pressure_term(c, x_ab, u_ab, r2, p_a, p_b) * x_ab
         if wp.static(viscous):
-            force += viscous_term(c, x_ab, v_ab, r2) * F
-        return force
+            force += viscous_term(c, x_ab, v_ab, r2)
+        return F * force
 
     return wp.func(pair_force)
 

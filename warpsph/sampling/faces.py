@@ -15,6 +15,8 @@ OCCUPIED = 0.85
 """Spacings from the place before a particle within which another takes that place (Marrone et al. 2010)."""
 FACING = 0.7
 """Least cosine between a normal and a direction in which it counts as pointing."""
+DISTINCT = 1e-6
+"""Part of the largest eigenvalue by which it exceeds the next one where the direction across a body is unique."""
 _DIFFERENCE = 1e-3
 
 
@@ -39,12 +41,13 @@ def faces_of(position: np.ndarray, shape: Shape | None, spacing: float, reach: f
 
     A particle has two faces if surfaces that look away from each other lie on both sides of it, both less than the
     reach from it; they are found from the normals of the surface particles around it, whose direction is the first
-    principal axis of sum n (x) n. The first face looks to the nearer surface. The mirror points of a body of several
-    shapes (None) lie before its surface particles.
+    principal axis of sum n (x) n. Where no axis stands out, as inside a small cube, rounding would choose the sides:
+    there it has one face. The first face looks to the nearer surface. The mirror points of a body of several shapes
+    (None) lie before its surface particles.
     """
     normal = particle_normals(position, spacing, reach)
-    axis, ahead, behind = _thin_axis(position, normal, spacing, reach)
-    thin = np.flatnonzero(np.isfinite(ahead + behind))
+    axis, distinct, ahead, behind = _thin_axis(position, normal, spacing, reach)
+    thin = np.flatnonzero(distinct & np.isfinite(ahead + behind))
     turn = np.where(ahead[thin] <= behind[thin], 1.0, -1.0)[:, None] * axis[thin]
     near, far = np.minimum(ahead, behind)[thin], np.maximum(ahead, behind)[thin]
     way = _way_over_particles(position, normal, spacing) if shape is None else _way(position, shape, spacing)
@@ -80,8 +83,9 @@ def particle_normals(position: np.ndarray, spacing: float, reach: float) -> np.n
 
 def _thin_axis(
     position: np.ndarray, normal: np.ndarray, spacing: float, reach: float
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Direction across the body (n, dim), and how far the surfaces ahead and behind are (n,) [m], or infinitely far."""
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+    """Direction across the body (n, dim), whether it is unique, and how far the surfaces ahead and behind are (n,) [m],
+    or infinitely far."""
     count, dim = position.shape
     surface = np.flatnonzero(normal.any(axis=1))
     pairs = cKDTree(position).sparse_distance_matrix(
@@ -90,7 +94,8 @@ def _thin_axis(
     near, seen = pairs.row, surface[pairs.col]
     dyads = np.einsum("pi,pj->pij", normal[seen], normal[seen])
     moments = _summed(near, dyads.reshape(-1, dim * dim), count).reshape(count, dim, dim)
-    axis = np.linalg.eigh(moments)[1][:, :, -1]
+    size, axes = np.linalg.eigh(moments)
+    axis, distinct = axes[:, :, -1], size[:, -1] - size[:, -2] > DISTINCT * size[:, -1]
     cosine = np.einsum("pi,pi->p", normal[seen], axis[near])
     along = np.einsum("pi,pi->p", position[seen] - position[near], axis[near])
     ends = []
@@ -99,7 +104,7 @@ def _thin_axis(
         end = np.full(count, np.inf)
         np.minimum.at(end, near[facing], way * along[facing] + 0.5 * spacing)
         ends.append(end)
-    return axis, ends[0], ends[1]
+    return axis, distinct, ends[0], ends[1]
 
 
 def _on_side(normal: np.ndarray, side: np.ndarray) -> np.ndarray:
