@@ -337,7 +337,7 @@ def test_steps_that_are_taken_back_leave_nothing_behind():
     for _ in range(2):
         stepper.return_to(kept)
         stepper.find_forces_again()
-        stepper.begin(1e-4)
+        stepper.begin(1e-4, 5)
         for _ in range(5):
             stepper.sub_step()
         ends.append(

@@ -183,7 +183,7 @@ def noisy(cfl: float, steps: int) -> tuple[float, float]:
     rng = np.random.default_rng(8)
     deform(one, 1e-4 * rng.normal(size=reference_of(one).shape))
     start = one.ledger()
-    one.stepper.begin(cfl * 2.0 / one.stepper.frequency)
+    one.stepper.begin(cfl * 2.0 / one.stepper.frequency, steps)
     for _ in range(steps):
         one.stepper.sub_step()
     end = one.ledger()
