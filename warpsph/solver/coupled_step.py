@@ -93,12 +93,14 @@ class CoupledStepper:
         if math.isfinite(self._most_sub_steps):
             limits["structure"] = self._most_sub_steps * self._structure.stable_step
         limit = min(limits, key=lambda name: limits[name])
-        if not self._faces.meet_fluid:
-            return limits[limit], limit
-        allowed = GRADE ** math.floor(math.log(limits[limit]) / math.log(GRADE))
+        return self._steady(limits[limit]) if self._faces.meet_fluid else limits[limit], limit
+
+    def _steady(self, longest: float) -> float:
+        """A size of at most that [s] that seldom changes."""
+        allowed = GRADE ** math.floor(math.log(longest) / math.log(GRADE))
         if not self.size <= allowed < 0.99 * GRADE**GROWTH * self.size:
             self.size = allowed
-        return self.size, limit
+        return self.size
 
     def push_structures(self) -> None:
         """Hand the forces of the fluid to the structures."""

@@ -55,7 +55,7 @@ class RelaxationStepper(StructureStepper):
         at = self.target if math.isfinite(self.target) else self.time
         ramp = min((self._made + SUB_STEPS) / RAMP_STEPS, 1.0) if self._model.has_time_laws else 1.0
         dt = self.stable_step
-        self._laws.write(self.time + ramp * (at - self.time), 0.0)
+        self._laws.write(self.time + ramp * (at - self.time))
         count = self._relax(SUB_STEPS, dt)
         if self.failed or self.is_unstable(dt):
             self.return_to(kept)

@@ -75,7 +75,7 @@ class StructureStepper:
         """Measure the stability limit at rest, then find the forces of the initial state."""
         self._set_clock(0.0)
         self.frequency = largest_frequency(self._model) if self._is_flexible or self._contact else 0.0
-        self._laws.write(self.time, 0.0)
+        self._laws.write(self.time)
         if self._rigid:
             self._rigid.start()
         self.find_forces()
@@ -290,7 +290,7 @@ class StructureStepper:
         self.advance(time)
         ahead = np.array(host_view(self._model.state.displacement))
         self.return_to(kept)
-        self._laws.write(self.time, 0.0)
+        self._laws.write(self.time)
         self.find_stresses()
         return ahead
 
@@ -314,7 +314,7 @@ class StructureStepper:
     def load(self, saved: Mapping[str, Any]) -> None:
         """Go on from what `save` returned; the state's arrays have been restored."""
         self.time, self.frequency = float(saved["time"]), float(saved["frequency"])
-        self._laws.write(self.time, 0.0)
+        self._laws.write(self.time)
         self.find_forces_again()
         if self._rigid:
             self._rigid.load(saved, self.time)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 
 from warpsph.particles.state import HostTable
-from warpsph.physics.structure import SUB_STEPS
 from warpsph.scene.expressions import evaluate
 from warpsph.solver.structure_assembly import StructureParts
 
@@ -22,18 +21,18 @@ class TimeLaws:
         self._load_factor = HostTable(self._model.scratch.load_factor)
         self._prescriptions = HostTable(self._model.scratch.prescriptions)
 
-    def write(self, time: float, dt: float, count: int = 0) -> None:
-        """Tabulate all laws at time, time + dt, ..., time + count dt [s]; without a count, all rows at `time`."""
+    def write(self, time: float, dt: float = 0.0, count: int = 0) -> None:
+        """Tabulate all laws at time, time + dt, ..., time + count dt [s]; later rows repeat the last of these."""
         if not self._model.has_time_laws:
             return
-        times = time + dt * np.arange((count or SUB_STEPS) + 1)
+        times = time + dt * np.arange(count + 1)
+        factors, prescriptions = self._load_factor.values, self._prescriptions.values
         for column, factor in enumerate(self._factors):
-            self._load_factor.values[: len(times), column] = evaluate(factor, {"t": times})
+            factors[: count + 1, column] = evaluate(factor, {"t": times})
         for column, motion in enumerate(self._motions):
-            for row in range(len(times) if count else 1):
-                for name, value in motion(float(times[row])).derivatives().items():
-                    self._prescriptions.values[name][row, column] = value
-        if not count and self._motions:
-            self._prescriptions.values[1:] = self._prescriptions.values[0]
-        self._load_factor.send()
-        self._prescriptions.send()
+            for row, at in enumerate(times):
+                for name, value in motion(float(at)).derivatives().items():
+                    prescriptions[name][row, column] = value
+        for table in (self._load_factor, self._prescriptions):
+            table.values[count + 1 :] = table.values[count]
+            table.send()
