@@ -8,7 +8,6 @@ the values alone.
 
 from __future__ import annotations
 
-import json
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
 from itertools import groupby
@@ -131,7 +130,7 @@ def main() -> None:
         for name, path in shipped_scenes().items()
         for quantity, reference in load_scene(path).references.items()
     }
-    rows = [json.loads(line) for line in RECORD.read_text(encoding="utf-8").splitlines() if line]
+    rows = pages.read_rows(RECORD)
     pages.rewrite(PAGE, BEGIN, END, table(trials(rows, references)))
 
 

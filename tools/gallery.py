@@ -129,7 +129,7 @@ def _chart(content: bytes) -> bytes:
 
 def main(report: Path | None) -> None:
     """Take the pictures of a report and write the page anew."""
-    rows = [json.loads(line) for line in RECORD.read_text(encoding="utf-8").splitlines() if line]
+    rows = pages.read_rows(RECORD)
     if report is not None:
         take(report)
     draw_errors(rows)

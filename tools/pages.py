@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterable, Sequence
 from pathlib import Path
+from typing import Any
 
 
 def table(columns: Sequence[str], rows: Iterable[Sequence[str]]) -> list[str]:
@@ -24,6 +26,11 @@ def rewrite(page: Path, begin: str, end: str, block: str) -> None:
     """Replace what stands between two marks of a page. Raises ValueError if a mark is missing."""
     text = page.read_text(encoding="utf-8")
     page.write_text(between(text, begin, end, block, page.name), encoding="utf-8")
+
+
+def read_rows(path: Path) -> list[dict[str, Any]]:
+    """The objects of a file that holds one JSON object a line."""
+    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
 
 
 def _line(cells: Sequence[str]) -> str:

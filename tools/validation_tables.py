@@ -1,4 +1,5 @@
-"""Keep the record of validation runs, and write its tables in docs/validation.md and README.md, and docs/gallery.md.
+"""Keep the record of validation runs, and write what is made of it in README.md and in docs/validation.md, gallery.md
+and accuracy.md.
 
 warpsph validate --json > out/validation.jsonl
 python tools/validation_tables.py out/validation.jsonl
@@ -16,8 +17,11 @@ from itertools import groupby
 from pathlib import Path
 from typing import Any
 
+import error_estimates
 import gallery
 import pages
+
+from warpsph.report.words import number, percent, quantity_in_words
 
 ROOT = Path(__file__).resolve().parents[1]
 RECORD, PAGE, README = ROOT / "docs/validation.jsonl", ROOT / "docs/validation.md", ROOT / "README.md"
@@ -73,15 +77,15 @@ def _cells(row: Row) -> list[str]:
     error = _error(row["error"], row)
     return [
         f"`{row['scene']}`",
-        _number(row["resolution"]),
-        _number(row["particles"], digits=8),
+        number(row["resolution"]),
+        number(row["particles"], digits=8),
         row["quantity"],
-        _number(row["value"]),
-        _number(row["reference"]),
+        number(row["value"]),
+        number(row["reference"]),
         f"**{error}**" if row["holds"] is False else error,
         _error(row["bound"], row),
-        _number(row["steps"], digits=8),
-        _number(row["wall_seconds"], digits=3),
+        number(row["steps"], digits=8),
+        number(row["wall_seconds"], digits=3),
     ]
 
 
@@ -91,10 +95,10 @@ def _summary_cells(rows: list[Row]) -> list[str]:
     first = of_finest[0]
     return [
         f"`{first['scene']}`",
-        _number(finest),
-        _number(first["particles"], digits=8),
+        number(finest),
+        number(first["particles"], digits=8),
         "; ".join(_verdicts(of_finest)),
-        _number(first["wall_seconds"], digits=3),
+        number(first["wall_seconds"], digits=3),
     ]
 
 
@@ -103,8 +107,8 @@ def _verdicts(rows: Iterable[Row]) -> list[str]:
     bounded = [row for row in rows if row["bound"] is not None]
     errors = [_verdict(row) for row in bounded if not row.get("error_unit")]
     limits = [row for row in bounded if row.get("error_unit")]
-    kept = ", ".join(_words(row) for row in limits if row["holds"])
-    broken = ", ".join(_words(row) for row in limits if not row["holds"])
+    kept = ", ".join(quantity_in_words(row["quantity"]) for row in limits if row["holds"])
+    broken = ", ".join(quantity_in_words(row["quantity"]) for row in limits if not row["holds"])
     return [
         *errors,
         *([f"within limits: {kept}"] if kept else []),
@@ -113,39 +117,26 @@ def _verdicts(rows: Iterable[Row]) -> list[str]:
 
 
 def _verdict(row: Row) -> str:
-    text = f"{_words(row)} {_error(row['error'], row)} ({_error(row['bound'], row)})"
+    text = f"{quantity_in_words(row['quantity'])} {_error(row['error'], row)} ({_error(row['bound'], row)})"
     return text if row["holds"] else f"**{text}**"
-
-
-def _words(row: Row) -> str:
-    return str(row["quantity"]).replace("_", " ")
-
-
-def _number(value: float | None, digits: int = 4) -> str:
-    return "-" if value is None else f"{value:.{digits}g}"
 
 
 def _error(error: float | None, row: Row) -> str:
     if error is None:
         return "-"
     unit = row.get("error_unit")
-    if unit:
-        return f"{error:.2g} {unit}"
-    return f"{100.0 * error:.2g} %" if error < 1.0 else f"{100.0 * error:.0f} %"
-
-
-def _read(path: Path) -> list[Row]:
-    return [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines() if line]
+    return f"{number(error, 2)} {unit}" if unit else percent(error)
 
 
 def main(results: Path | None) -> None:
-    """Take the JSON lines of a file into the record, and write both tables and the gallery."""
-    rows = merged(_read(RECORD), _read(results) if results else ())
+    """Take the JSON lines of a file into the record, and write every page that is made of it."""
+    rows = merged(pages.read_rows(RECORD), pages.read_rows(results) if results else ())
     slim = [{key: value for key, value in row.items() if key not in ("samples", "source")} for row in rows]
     RECORD.write_text("".join(json.dumps(row) + "\n" for row in slim), encoding="utf-8")
     pages.rewrite(PAGE, BEGIN, END, table(rows))
     pages.rewrite(README, BEGIN, END, summary(rows))
     gallery.main(None)
+    error_estimates.main()
 
 
 if __name__ == "__main__":
