@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from fake_runs import SCENE
+from fake_runs import SCENE, run_that
 from typer.testing import CliRunner, Result
 
 from warpsph.cli.app import app
@@ -29,3 +29,13 @@ def warpsph() -> Callable[..., Result]:
         return CliRunner().invoke(app, [str(argument) for argument in arguments], catch_exceptions=False)
 
     return call
+
+
+@pytest.fixture
+def ending(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Path], dict[str, Any]]], None]:
+    """Let every run end in a given way instead of running."""
+
+    def replace(end: Callable[[Path], dict[str, Any]]) -> None:
+        monkeypatch.setattr("warpsph.solver.run.run_scene", run_that(end))
+
+    return replace

@@ -15,16 +15,6 @@ Command = Callable[..., Result]
 ASKING = "accuracy={quantity: front, within: 1%}"
 
 
-@pytest.fixture
-def ending(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Path], dict[str, Any]]], None]:
-    """Let every run end in a given way instead of running."""
-
-    def replace(end: Callable[[Path], dict[str, Any]]) -> None:
-        monkeypatch.setattr("warpsph.solver.run.run_scene", run_that(end))
-
-    return replace
-
-
 def summary_of(directory: Path) -> dict[str, Any]:
     found: dict[str, Any] = json.loads((directory / "summary.json").read_text())
     return found

@@ -5,25 +5,14 @@ from __future__ import annotations
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import fake_runs
 import pytest
-from fake_runs import converging, run_that
+from fake_runs import converging
 from typer.testing import Result
 
 Command = Callable[..., Result]
 ASKING = "accuracy={quantity: front, within: 1%}"
-
-
-@pytest.fixture
-def ending(monkeypatch: pytest.MonkeyPatch) -> Callable[[Callable[[Path], dict[str, Any]]], None]:
-    """Let every run end in a given way instead of running."""
-
-    def replace(end: Callable[[Path], dict[str, Any]]) -> None:
-        monkeypatch.setattr("warpsph.solver.run.run_scene", run_that(end))
-
-    return replace
 
 
 def test_real_pilots_run_once(warpsph: Command, scene_file: Path, tmp_path: Path) -> None:

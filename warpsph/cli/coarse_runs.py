@@ -9,7 +9,7 @@ from typing import Any
 
 from rich.console import Console
 
-from warpsph.cli.plan import make_plan, plan_record, run_coarser
+from warpsph.cli.plan import make_plan, percent, plan_record, run_coarser
 from warpsph.cli.run import default_directory
 from warpsph.comparison.quantities import name_of
 from warpsph.output.run_directory import RunDirectory
@@ -40,10 +40,12 @@ class Prepared:
     def run_coarse(
         self, console: Console, *, device: str | None, threads: int | None, quiet: bool
     ) -> Prepared:
-        """Make the coarse runs; with a plan, the scene gets the spacing that it proposes.
+        """Make the coarse runs, if any; with a plan, the scene gets the spacing that it proposes.
 
         Raises PlanError if the pilots allow none.
         """
+        if not self.coarse:
+            return self
         options: dict[str, Any] = {"device": device, "threads": threads, "quiet": quiet}
         if not self.plans:
             return replace(self, runs=run_coarser(self.coarse, self.directory, console, **options))
@@ -73,7 +75,7 @@ class Prepared:
         accuracy = self.scene.accuracy
         if accuracy is None or self.plan is not None:
             return None
-        target = f"{name_of(accuracy.quantity)} within {100.0 * accuracy.within:.3g} %"
+        target = f"{name_of(accuracy.quantity)} within {percent(accuracy.within)}"
         return (
             f"the scene asks for {target}: this run took its spacing as it stands; "
             "--plan takes the one that this needs"

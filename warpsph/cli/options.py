@@ -21,4 +21,5 @@ Device = Annotated[
 ]
 Threads = Annotated[int | None, typer.Option(min=1, help="CPU threads. Default: every core.")]
 Verbose = Annotated[bool, typer.Option("--verbose", help="Show what Warp says, and tracebacks of errors.")]
+NoProgress = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
 OutDirectory = Annotated[Path | None, typer.Option("--out", metavar="DIR", help="Directory of the run.")]

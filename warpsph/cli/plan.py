@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from warpsph.cli.failures import ExitCode, reported
-from warpsph.cli.options import Device, OutDirectory, Overrides, SceneArgument, Threads, Verbose
+from warpsph.cli.options import Device, NoProgress, OutDirectory, Overrides, SceneArgument, Threads, Verbose
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -21,7 +21,6 @@ if TYPE_CHECKING:
     from warpsph.validation.plan import Plan
 
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object instead of tables.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
 
 
 @reported
@@ -32,7 +31,7 @@ def plan(
     threads: Threads = None,
     overrides: Overrides = None,
     as_json: Json = False,
-    quiet: Quiet = False,
+    quiet: NoProgress = False,
     verbose: Verbose = False,
 ) -> ExitCode:
     """Propose the spacing for the accuracy that a scene asks for, from two or three coarse pilots.
@@ -121,7 +120,7 @@ def show_plan(console: Console, scene: Scene, made: Plan) -> None:
     accuracy, unit = accuracy_of(scene), record["unit"]
     whole = "its value" if accuracy.relative_to == "value" else f"{accuracy.relative_to:g} {unit}"
     console.print(
-        f"{scene.name}: {record['quantity']} within {_percent(made.within)} of {whole}", soft_wrap=True
+        f"{scene.name}: {record['quantity']} within {percent(made.within)} of {whole}", soft_wrap=True
     )
     console.print(_pilot_table(made, unit))
     for line in _lines(made):
@@ -144,7 +143,7 @@ def _pilot_table(made: Plan, unit: str) -> RenderableType:
         table.add_row(
             f"{pilot.spacing:.4g}",
             f"{shown:.6g}",
-            "-" if error is None else _percent(error),
+            "-" if error is None else percent(error),
             str(pilot.particles),
             str(pilot.steps),
             f"{pilot.wall_seconds:.3g}",
@@ -184,8 +183,8 @@ def proposal_in_words(made: Plan) -> str:
     proposal = made.proposal
     assert proposal is not None
     return (
-        f"spacing {proposal.spacing:.4g} m; expected error {_percent(proposal.error)}, with its uncertainty at most "
-        f"{_percent(proposal.uncertainty)}; about {proposal.particles:.3g} particles, {proposal.steps:.3g} steps, "
+        f"spacing {proposal.spacing:.4g} m; expected error {percent(proposal.error)}, with its uncertainty at most "
+        f"{percent(proposal.uncertainty)}; about {proposal.particles:.3g} particles, {proposal.steps:.3g} steps, "
         f"{duration(proposal.wall_seconds)} on {proposal.machine}, {size_in_words(proposal.memory_bytes)}"
     )
 
@@ -194,8 +193,8 @@ def plan_in_words(record: Mapping[str, Any]) -> str:
     """The plan that a run follows, from its record: which spacing, for what."""
     proposal = record["proposal"]
     return (
-        f"spacing {proposal['spacing']:.4g} m for {record['quantity']} within {_percent(record['within'])}; "
-        f"expected error {_percent(proposal['error'])}, at most {_percent(proposal['uncertainty'])}"
+        f"spacing {proposal['spacing']:.4g} m for {record['quantity']} within {percent(record['within'])}; "
+        f"expected error {percent(proposal['error'])}, at most {percent(proposal['uncertainty'])}"
     )
 
 
@@ -204,12 +203,13 @@ def outcome_in_words(record: Mapping[str, Any]) -> str:
     shown, spacing = record["outcome"], record["proposal"]["spacing"]
     if shown["met"] is None:
         return "not known: a run has no value of the quantity"
-    words = f"estimated error {_percent(shown['error'])}, at most {_percent(shown['uncertainty'])}"
+    words = f"estimated error {percent(shown['error'])}, at most {percent(shown['uncertainty'])}"
     if shown["met"]:
         return f"met: {words}"
     pilots = ", ".join(f"{spacing * factor:.4g}" for factor in (2.0, 4.0 / 3.0, 1.0))
     return f"not met: {words}; plan again from here with accuracy.pilots: [{pilots}]"
 
 
-def _percent(part: float) -> str:
+def percent(part: float) -> str:
+    """A part of a whole in percent."""
     return f"{100.0 * part:.3g} %"

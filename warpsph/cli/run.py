@@ -69,11 +69,9 @@ def run(
     before = prepared(scene, overrides or (), out, plan=plan, estimate_error=estimate_error)
     directory, flags = before.directory, ["--plan"] * plan + ["--estimate-error"] * estimate_error
     again = resume_command(scene, directory, overrides or (), device, threads, flags)
-    if before.coarse:
-        start_warp(device, verbose=verbose)
-        before = before.run_coarse(console, device=device, threads=threads, quiet=quiet)
+    start_warp(device, verbose=verbose)
+    before = before.run_coarse(console, device=device, threads=threads, quiet=quiet)
     with reporter_for(console, quiet=quiet) as reporter, stating_what_is_kept(directory, again, reporter):
-        start_warp(device, verbose=verbose)
         from warpsph.solver.run import run_scene
 
         finished = run_scene(

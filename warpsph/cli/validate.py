@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from warpsph.cli.failures import BadInput, ExitCode, reported
-from warpsph.cli.options import Device, Overrides, Threads, Verbose
+from warpsph.cli.options import Device, NoProgress, Overrides, Threads, Verbose
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -54,7 +54,6 @@ Resume = Annotated[
     ),
 ]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of all runs.")]
-Quiet = Annotated[bool, typer.Option("--quiet", help="Show no progress.")]
 
 
 @reported
@@ -70,7 +69,7 @@ def validate(
     device: Device = None,
     threads: Threads = None,
     overrides: Overrides = None,
-    quiet: Quiet = False,
+    quiet: NoProgress = False,
     verbose: Verbose = False,
 ) -> ExitCode:
     """Run scenes over their resolutions and compare them with their references.

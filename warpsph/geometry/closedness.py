@@ -50,7 +50,7 @@ def refuse_open(vertices: np.ndarray, faces: np.ndarray) -> None:
     open_edges = edges.ends[edges.count % 2 == 1]
     if len(open_edges) == 0:
         return
-    holes = len(np.unique(_components(open_edges, len(vertices))[open_edges[:, 0]]))
+    holes = len(np.unique(components(open_edges, len(vertices))[open_edges[:, 0]]))
     first = " to ".join(_at(vertices[end]) for end in open_edges[0])
     raise GeometryError(
         f"the surface is open along {len(open_edges)} of its {len(edges.ends)} edges, in {holes} "
@@ -72,7 +72,7 @@ def consistently_wound(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     first, second = order.T // 3
     alike = edges.way.ravel()[order].sum(axis=1) != 0
     pairs = np.stack([[first, second + m * alike], [first + m, second + m * ~alike]], axis=1)
-    component = _components(pairs.reshape(2, -1).T, 2 * m)
+    component = components(pairs.reshape(2, -1).T, 2 * m)
     as_is, reversed_ = component[:m], component[m:]
     result = np.where((as_is <= reversed_)[:, None], faces, faces[:, ::-1])
     if (as_is == reversed_).any() or not _Edges.of(result).is_balanced:
@@ -93,7 +93,7 @@ def turned_outwards(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     """
     if signed_volume(vertices[faces]) < 0.0:
         faces = faces[:, ::-1]
-    shell = _components(np.concatenate([faces[:, :2], faces[:, 1:]]), len(vertices))[faces[:, 0]]
+    shell = components(np.concatenate([faces[:, :2], faces[:, 1:]]), len(vertices))[faces[:, 0]]
     result = faces.copy()
     for label in np.unique(shell):
         own = shell == label
@@ -103,14 +103,10 @@ def turned_outwards(vertices: np.ndarray, faces: np.ndarray) -> np.ndarray:
     return result
 
 
-def graph(pairs: np.ndarray, count: int) -> coo_matrix:
-    """The graph of `count` nodes with an edge for each of the pairs (n, 2)."""
-    return coo_matrix((np.ones(len(pairs), dtype=bool), tuple(pairs.T)), shape=(count, count))
-
-
-def _components(pairs: np.ndarray, count: int) -> np.ndarray:
+def components(pairs: np.ndarray, count: int) -> np.ndarray:
     """The component (count,) of each node of a graph with the edges `pairs` (n, 2)."""
-    return np.asarray(connected_components(graph(pairs, count), directed=False)[1])
+    graph = coo_matrix((np.ones(len(pairs), dtype=bool), tuple(pairs.T)), shape=(count, count))
+    return np.asarray(connected_components(graph, directed=False)[1])
 
 
 def _at(point: np.ndarray) -> str:

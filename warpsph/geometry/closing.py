@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.sparse.csgraph import connected_components
 from scipy.spatial import cKDTree
 
-from warpsph.geometry.closedness import consistently_wound, graph, refuse_open, turned_outwards
+from warpsph.geometry.closedness import components, consistently_wound, refuse_open, turned_outwards
 from warpsph.geometry.errors import GeometryError
 from warpsph.geometry.mesh import TriangleMesh
 
@@ -44,7 +43,7 @@ def _joined(vertices: np.ndarray, faces: np.ndarray) -> tuple[np.ndarray, np.nda
     points, same = np.unique(vertices[used], axis=0, return_inverse=True)
     diagonal = float(np.linalg.norm(np.ptp(points, axis=0)))
     pairs = cKDTree(points).query_pairs(_SAME_PLACE * diagonal, output_type="ndarray")
-    _, group = connected_components(graph(pairs, len(points)), directed=False)
+    group = components(pairs, len(points))
     _, first = np.unique(group, return_index=True)
     joined = group[same.ravel()][place.reshape(faces.shape)]
     a, b, c = joined.T

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from warpsph.comparison.features import feature_unit
+from warpsph.comparison.fields import field_unit
 from warpsph.comparison.limits import unit_of
 from warpsph.comparison.row import History, column_of
 from warpsph.comparison.series import Series, read_table
@@ -20,7 +21,6 @@ from warpsph.scene.references import FeatureReference, ProfileReference, Relativ
 from warpsph.validation.options import as_mapping, options_in_words
 from warpsph.validation.runner import CaseResult
 
-FIELD_UNITS = {"pressure": "Pa", "density": "kg/m3"}
 TIMES = ("arrival", "first_peak_time", "maximum_time", "minimum_time")
 LEVELS = ("maximum", "minimum", "mean", "first_peak")
 
@@ -139,12 +139,11 @@ def _profile_chart(name: str, reference: ProfileReference, results: Sequence[Cas
     points = [_columns(sample["points"]) for sample in samples]
     runs = tuple(Curve(_label(result), x, y) for result, (x, y, _) in zip(results, points, strict=True))
     x, _, expected = points[-1]
-    unit = FIELD_UNITS.get(reference.field, "m/s")
     yield Chart(
         name=name,
         title=f"{quantity_in_words(name)} at t = {samples[-1]['time']:.4g} s",
         x_label=f"{reference.axis} [m]",
-        y_label=f"{quantity_in_words(reference.field)} [{unit}]",
+        y_label=f"{quantity_in_words(reference.field)} [{field_unit(reference.field)}]",
         runs=runs,
         reference=_reference(x, expected, reference),
     )

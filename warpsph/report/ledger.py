@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from warpsph.report.words import quantity_in_words
+from warpsph.scene.types import AXES
 
-AXES = "xyz"
 NAMES = {
     "strain": "strain energy",
     "hourglass": "hourglass energy",

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
 from typing import Any
 
@@ -37,9 +38,10 @@ class FinishedRun:
     def values_of(self, quantity: Quantity) -> np.ndarray:
         """Computed values of a quantity, shape (values,)."""
         rows = {row["quantity"]: row for row in self.summary["references"]}
-        history = {} if isinstance(quantity, str) else self._history()
+        history = {} if isinstance(quantity, str) else self._history
         return values_of(quantity, self.scene, history, rows)
 
+    @cached_property
     def _history(self) -> History:
         file = RunDirectory(self.directory).probes
         return {name: np.asarray(values) for name, values in read_probes(file).items()}
