@@ -7,35 +7,15 @@ import pytest
 
 from warpsph.output.probes_csv import read_probes
 from warpsph.scene.errors import SceneError
-from warpsph.scene.schema import Scene
 from warpsph.solver.run import run_scene
 from warpsph.solver.simulation import Simulation
+from warpsph.validation.hard.few_particles import DP, END, RUBBER, row
+from warpsph.validation.hard.shapes import GRAVITY
 
-DP, GRAVITY, END = 0.1, 9.81, 0.5
-RUBBER = {"density": 1000.0, "youngs_modulus": 1.0e6, "poisson_ratio": 0.3}
-WATER = {"density": 1000.0, "pressure": {"type": "uniform", "value": 0.0}}
 FALL = -0.5 * GRAVITY * END**2
 
 DIMENSIONS = pytest.mark.parametrize("dimension", [2, 3])
 KINDS = pytest.mark.parametrize("kind", ["fluid", "structure"])
-
-
-def row(kind, dimension, count, velocity=0.0, **changes):
-    """So many particles along x, whose velocity [m/s] along it is a number or an expression; gravity acts downwards."""
-    shape = {"type": "box", "min": (0.0,) * dimension, "max": (count * DP, *(DP,) * (dimension - 1))}
-    body = {"shape": shape, "velocity": (velocity, *(0.0,) * (dimension - 1))}
-    what = {"fluids": {"body": body | WATER}}
-    if kind == "structure":
-        what = {"structures": {"body": body | {"material": RUBBER}}}
-    base = {
-        "name": "row",
-        "dimension": dimension,
-        "spacing": DP,
-        "gravity": (*(0.0,) * (dimension - 1), -GRAVITY),
-        "time": {"end": END, "frame_rate": 10.0},
-        "numerics": {"precision": "double", "sound_speed": 40.0},
-    }
-    return Scene(**(base | what | changes))
 
 
 def simulate(scene):

@@ -1,33 +1,30 @@
 """Properties of nature that every run must have, on random small scenes of fluids, structures and both.
 
 Laws do not depend on where one stands, how one is turned, how fast one moves and how one counts. What differs between
-two runs is rounding, and rounding alone: of the separation of two particles, which single or double precision knows to
-a part `eps` of the size L of the scene, hence the slope of the kernel to eps L / h. A step changes a velocity by up to
-the sound speed c times the Courant number (a quarter), so that it differs by less than eps c L / h a step, the density
-by as much times rho / c, and a position by what the velocity makes of that in the time of the run.
+two runs is rounding, and rounding alone: see `rounding` of the random scenes.
 """
 
 import numpy as np
 import pytest
 from hypothesis import Phase, given, settings
 from hypothesis import strategies as st
-from invariance_builders import (
-    DENSITY,
+
+from warpsph.particles import launch
+from warpsph.validation.hard import random_scenes
+from warpsph.validation.hard.case import Machine
+from warpsph.validation.hard.random_scenes import (
     DURATION,
-    SMOOTHING_LENGTH,
     SOUND_SPEED,
-    STEPS,
     Case,
     State,
     carried,
-    end_state,
     random_case,
+    rounding,
+    seen_back,
     shuffled,
     turned,
     with_skin,
 )
-
-from warpsph.particles import launch
 
 KINDS = pytest.mark.parametrize("kind", ["fluid", "structure", "coupled"])
 PRECISIONS = pytest.mark.parametrize("precision", ["single", "double"])
@@ -44,24 +41,14 @@ OFTEN, ONCE = 0.02, 3.0
 """Skins of the lists, in support radii: they are made in almost every step, or nothing outruns the first ones."""
 
 
+def end_state(case: Case, threads: int = 1, orders: list[np.ndarray] | None = None) -> State:
+    return random_scenes.end_state(case, Machine("cpu"), threads=threads, orders=orders)
+
+
 def assert_same(found: State, expected: State, case: Case, distance: float = 0.0) -> None:
-    """The two states differ by rounding; in one of them the scene was at a distance [m] from the origin.
-
-    Places are stored in double precision, those at a distance to so much less.
-    """
-    eps = {"single": np.finfo(np.float32).eps, "double": np.finfo(np.float64).eps}
-    places = np.concatenate([one.position for one in case.sets])
-    resolution = eps[case.scene.numerics.precision] * np.ptp(places, axis=0).max() + eps["double"] * distance
-    speed = STEPS * resolution / SMOOTHING_LENGTH * SOUND_SPEED
-    for name, unit in {"velocity": 1.0, "density": DENSITY / SOUND_SPEED, "position": DURATION}.items():
-        np.testing.assert_allclose(
-            getattr(found, name), getattr(expected, name), rtol=0.0, atol=unit * speed, err_msg=name
-        )
-
-
-def back(state: State, matrix: np.ndarray, shift: np.ndarray | float = 0.0) -> State:
-    """A state seen from the axes and the place that `turned` has left."""
-    return State((state.position - shift) @ matrix, state.velocity @ matrix, state.density)
+    """The two states differ by rounding; in one of them the scene was at a distance [m] from the origin."""
+    differences = rounding(found, expected, case, distance)
+    assert max(differences.values()) <= 1.0, differences
 
 
 def rotation(dimension: int, angles: np.ndarray) -> np.ndarray:
@@ -87,7 +74,7 @@ def test_quarter_turns_and_mirrors(kind, precision, cells, seed, scattered, axes
     case = random_case(kind, len(cells), precision, cells, seed, scattered)
     order = [axis for axis in axes if axis < len(cells)]
     matrix = np.diag(signs[: len(cells)])[order]
-    assert_same(back(end_state(turned(case, matrix)), matrix), end_state(case), case)
+    assert_same(seen_back(end_state(turned(case, matrix)), matrix), end_state(case), case)
 
 
 @KINDS
@@ -97,7 +84,7 @@ def test_quarter_turns_and_mirrors(kind, precision, cells, seed, scattered, axes
 def test_turns_by_any_angle(kind, precision, cells, seed, scattered, parts):
     case = random_case(kind, len(cells), precision, cells, seed, scattered)
     matrix = rotation(len(cells), np.pi * np.array(parts))
-    assert_same(back(end_state(turned(case, matrix)), matrix), end_state(case), case)
+    assert_same(seen_back(end_state(turned(case, matrix)), matrix), end_state(case), case)
 
 
 @KINDS
@@ -107,7 +94,7 @@ def test_turns_by_any_angle(kind, precision, cells, seed, scattered, parts):
 def test_ten_kilometres_from_the_origin(kind, precision, cells, seed, scattered, parts):
     case = random_case(kind, len(cells), precision, cells, seed, scattered)
     still, shift = np.eye(len(cells)), FAR * np.array(parts[: len(cells)])
-    found = back(end_state(turned(case, still, shift)), still, shift)
+    found = seen_back(end_state(turned(case, still, shift)), still, shift)
     assert_same(found, end_state(case), case, distance=float(np.abs(shift).max()))
 
 

@@ -42,6 +42,13 @@ Compare = Annotated[
         "then with every combination.",
     ),
 ]
+Hard = Annotated[
+    bool,
+    typer.Option(
+        "--hard",
+        help="Run the hard cases, meant to break the scheme, instead of scenes; SCENE names some of them.",
+    ),
+]
 Json = Annotated[bool, typer.Option("--json", help="Print one JSON object a line instead of a table.")]
 Report = Annotated[
     bool,
@@ -60,6 +67,7 @@ Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of al
 def validate(
     scenes: Scenes = None,
     quick: Quick = False,
+    hard: Hard = False,
     resolutions: Resolutions = None,
     compare: Compare = None,
     json_lines: Json = False,
@@ -84,6 +92,16 @@ def validate(
     from warpsph.validation.convergence import judged
     from warpsph.validation.runner import run_case
 
+    if hard:
+        of_scenes = {"--quick": quick, "--resolutions": resolutions, "--compare": compare, "--set": overrides}
+        refuse_with_hard({**of_scenes, "--resume": resume})
+        start_warp(device, verbose=verbose)
+        from warpsph.cli.hard import validate_hard
+        from warpsph.validation.hard.case import Machine
+
+        console = plain_console(stderr=True, quiet=quiet)
+        chosen = Machine(device, threads)
+        return validate_hard(scenes or (), chosen, out, console, json_lines=json_lines, with_page=report)
     spacings = parse_spacings(resolutions)
     compared = parse_compared(compare or ())
     cases = planned_cases(scenes, quick, spacings, overrides or (), compared)
@@ -104,6 +122,16 @@ def validate(
         if results:
             write_report(results, out, progress, with_page=report)
     return ExitCode.OK if all(result.holds for result in results) else ExitCode.FAILED
+
+
+def refuse_with_hard(given: Mapping[str, Any]) -> None:
+    """Raise BadInput for the first option that was given although hard cases have no use for it."""
+    for option, value in given.items():
+        if value:
+            raise BadInput(
+                f"{option} is of no use with --hard: the cases are fixed; allowed: names of cases, --json, --report, "
+                "--out, --device and --threads"
+            )
 
 
 def in_words(case: Case) -> str:

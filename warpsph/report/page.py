@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import base64
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from html import escape
 from typing import Any
 
 from warpsph.report.content import SceneReport
+from warpsph.report.html import document, table, text_list, verdict
 from warpsph.report.ledger import entries_of
 from warpsph.report.words import (
     machine,
@@ -26,22 +27,6 @@ from warpsph.validation.study import Study
 Pictures = Mapping[str, Mapping[str, bytes]]
 """PNGs by scene and by what they show."""
 
-STYLE = """
-body { font: 15px/1.5 system-ui, sans-serif; color: #2b2f36; max-width: 1100px; margin: 2em auto; padding: 0 1em; }
-h1, h2, h3 { font-weight: 600; line-height: 1.2; }
-h2 { margin-top: 2.5em; border-top: 1px solid #b9bec6; padding-top: 1em; }
-h3 { margin: 1.6em 0 0.4em; font-size: 1em; }
-.scroll { overflow-x: auto; }
-table { border-collapse: collapse; font-size: 13px; font-variant-numeric: tabular-nums; }
-th, td { text-align: left; padding: 0.25em 1.2em 0.25em 0; vertical-align: top; border-bottom: 1px solid #e6e8eb; }
-th { font-weight: 600; border-bottom-color: #b9bec6; }
-img { max-width: 100%; height: auto; display: block; margin: 0.8em 0; }
-.sentence { font-size: 1.1em; }
-.no { color: #b3261e; font-weight: 600; }
-.yes { color: #1b7f4b; }
-.quiet { color: #5f6670; }
-"""
-
 _ERRORS = (
     "spacing [m]",
     "particles",
@@ -56,7 +41,6 @@ _ERRORS = (
 )
 _STUDIES = ("quantity", "observed order", "half the error takes")
 _LEDGER = ("total", "unit", "start", "end", "change")
-_VERDICTS = {True: ("yes", "yes"), False: ("no", "NO"), None: ("quiet", "-")}
 
 
 def page(reports: Sequence[SceneReport], pictures: Pictures, notice: str | None = None) -> str:
@@ -66,12 +50,11 @@ def page(reports: Sequence[SceneReport], pictures: Pictures, notice: str | None 
             "<h1>Validation report</h1>",
             f"<p class='quiet'>{escape(_provenance(reports))}</p>",
             *([f"<p class='no'>{escape(notice)}</p>"] if notice else []),
-            _table(("scene", "how good, for how much", "bounds kept"), map(_overview, reports)),
+            table(("scene", "how good, for how much", "bounds kept"), map(_overview, reports)),
             *(_section(report, pictures.get(report.scene.name, {})) for report in reports),
         ]
     )
-    head = f"<meta charset='utf-8'><title>Validation report</title><style>{STYLE}</style>"
-    return f"<!DOCTYPE html>\n<html lang='en'><head>{head}</head>\n<body>\n{body}\n</body></html>\n"
+    return document("Validation report", body)
 
 
 def _overview(report: SceneReport) -> list[str]:
@@ -103,7 +86,7 @@ def _section(report: SceneReport, pictures: Mapping[str, bytes]) -> str:
             *(part for result in _with_ledger(report.results) for part in _conservation(result)),
             *_warnings(report.results),
             "<h3>References</h3>",
-            _list(_sources(report)),
+            text_list(_sources(report)),
         ]
     )
 
@@ -127,7 +110,7 @@ def _image(title: str, data: bytes) -> str:
 def _error_table(report: SceneReport) -> str:
     compared = ("options",) if report.compares_options else ()
     rows = ([*map(escape, _options(row, bool(compared))), *_error_cells(row)] for row in report.rows)
-    return _table((*compared, *_ERRORS), rows)
+    return table((*compared, *_ERRORS), rows)
 
 
 def _options(row: Mapping[str, Any], compared: bool) -> list[str]:
@@ -145,7 +128,7 @@ def _error_cells(row: Mapping[str, Any]) -> list[str]:
         number(row["reference"]),
         escape(quoted_error(row)),
         "-" if bound is None else percent(bound),
-        _verdict(row["holds"]),
+        verdict(row["holds"]),
         "-" if seconds is None else wall_time(seconds),
         "-" if steps is None or particles is None else number(steps * particles / 1e6, 3),
     ]
@@ -164,7 +147,7 @@ def _study_table(report: SceneReport) -> list[str]:
         return []
     compared = ("options",) if report.compares_options else ()
     rows = ([*([escape(study.label)] if compared else []), *_study_cells(study)] for study in studies)
-    return ["<h3>Convergence</h3>", _table((*compared, *_STUDIES), rows)]
+    return ["<h3>Convergence</h3>", table((*compared, *_STUDIES), rows)]
 
 
 def _study_cells(study: Study) -> list[str]:
@@ -189,7 +172,7 @@ def _conservation(result: CaseResult) -> Iterator[str]:
     assert result.summary is not None
     run = ", ".join([f"spacing {result.case.scene.spacing:g} m", *result.case.options])
     yield f"<h3>Conservation, {escape(run)}</h3>"
-    yield _table(
+    yield table(
         _LEDGER,
         (
             [entry.name, entry.unit, *(number(value, 5) for value in (entry.start, entry.end, entry.change))]
@@ -210,7 +193,7 @@ def _warnings(results: Sequence[CaseResult]) -> list[str]:
         for result in results
         for warning in (result.summary or {}).get("warnings", ())
     )
-    return ["<h3>Warnings</h3>", _list(warnings)] if warnings else []
+    return ["<h3>Warnings</h3>", text_list(warnings)] if warnings else []
 
 
 def _sources(report: SceneReport) -> Iterator[str]:
@@ -226,19 +209,3 @@ def _provenance(reports: Sequence[SceneReport]) -> str:
     machines = dict.fromkeys(f"{s['device']}, {machine(s['device'], s['threads'])}" for s in summaries)
     versions = dict.fromkeys(f"{k} {v}" for s in summaries for k, v in s["versions"].items())
     return f"Computed on {'; '.join(machines) or 'nothing'}. Versions: {', '.join(versions) or 'unknown'}."
-
-
-def _verdict(holds: bool | None) -> str:
-    kind, word = _VERDICTS[holds]
-    return f"<span class='{kind}'>{word}</span>"
-
-
-def _list(items: Iterable[str]) -> str:
-    return f"<ul>{''.join(f'<li>{escape(item)}</li>' for item in items)}</ul>"
-
-
-def _table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
-    """A table of cells that are HTML already."""
-    head = "".join(f"<th>{escape(cell)}</th>" for cell in header)
-    body = "\n".join(f"<tr>{''.join(f'<td>{cell}</td>' for cell in row)}</tr>" for row in rows)
-    return f"<div class='scroll'><table><thead><tr>{head}</tr></thead>\n<tbody>{body}</tbody></table></div>"

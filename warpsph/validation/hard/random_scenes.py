@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import Literal
 
 import numpy as np
 
-from warpsph.particles.launch import Launcher
 from warpsph.sampling import SampledSet, sample
 from warpsph.scene.schema import Scene
-from warpsph.solver.simulation import make_system
+from warpsph.validation.hard.case import Machine
+from warpsph.validation.hard.shapes import box
 
 Kind = Literal["fluid", "structure", "coupled"]
 
@@ -66,9 +66,9 @@ def _scene(kind: Kind, dimension: int, precision: str, cells: tuple[int, ...]) -
     size = SPACING * np.asarray(cells, dtype=float)
     thick, low, across = LAYERS * SPACING, np.zeros(dimension), np.append(size[:-1], 0.0)
     up = np.append(np.zeros(dimension - 1), 1.0)
-    water = {"water": {"shape": _box(low, size), "density": DENSITY}}
-    wall = {"wall": {"shape": _box(-thick * up, across), "side": "solid"}}
-    body = _box(low, size) if kind == "structure" else _box(size * up, size + thick * up)
+    water = {"water": {"shape": box(low, size), "density": DENSITY}}
+    wall = {"wall": {"shape": box(-thick * up, across), "side": "solid"}}
+    body = box(low, size) if kind == "structure" else box(size * up, size + thick * up)
     elastic = {"density": DENSITY, "youngs_modulus": DENSITY * SOUND_SPEED**2, "poisson_ratio": 0.0}
     return Scene(
         name=kind,
@@ -80,10 +80,6 @@ def _scene(kind: Kind, dimension: int, precision: str, cells: tuple[int, ...]) -
         boundaries={} if kind == "structure" else wall,
         structures={} if kind == "fluid" else {"body": {"shape": body, "material": elastic}},
     )
-
-
-def _box(low: np.ndarray, high: np.ndarray) -> dict[str, Any]:
-    return {"type": "box", "min": tuple(low.tolist()), "max": tuple(high.tolist())}
 
 
 def _stirred(one: SampledSet, rng: np.random.Generator, spread: np.ndarray, scattered: bool) -> SampledSet:
@@ -100,6 +96,7 @@ def _stirred(one: SampledSet, rng: np.random.Generator, spread: np.ndarray, scat
 
 
 def with_gravity(scene: Scene, gravity: np.ndarray) -> Scene:
+    """The scene under another gravity [m/s2]."""
     return scene.model_copy(update={"gravity": tuple(gravity.tolist())})
 
 
@@ -140,9 +137,11 @@ def _picked(one: SampledSet, order: np.ndarray) -> SampledSet:
     return replace(one, **own)
 
 
-def end_state(case: Case, threads: int = 1, orders: list[np.ndarray] | None = None) -> State:
+def end_state(
+    case: Case, machine: Machine, *, threads: int = 1, orders: list[np.ndarray] | None = None
+) -> State:
     """The state at the end of a run; particles of sets that are in other `orders` in their first one."""
-    system = make_system(case.scene, case.sets, Launcher("cpu", threads))
+    system = machine.system(case.scene, case.sets, threads)
     system.set_target(DURATION)
     made = 0
     while system.time < DURATION:
@@ -162,3 +161,29 @@ def end_state(case: Case, threads: int = 1, orders: list[np.ndarray] | None = No
 
     moving = ("fluid", "structure")
     return State(column("position", *moving), column("velocity", *moving), column("density", "fluid"))
+
+
+def rounding(found: State, expected: State, case: Case, distance: float = 0.0) -> dict[str, float]:
+    """By how much two states of a case differ at most, by field, in units of what rounding explains.
+
+    In one of them the scene was at a `distance` [m] from the origin. The separation of two particles is known to a part
+    `eps` of the size L of the scene, hence the slope of the kernel to eps L / h. A step changes a velocity by up to the
+    sound speed c times the Courant number (a quarter), so that it differs by less than eps c L / h a step, the density
+    by as much times rho / c, and a position by what the velocity makes of that in the time of the run. Places are
+    stored in double precision, those at a distance to so much less.
+    """
+    eps = {"single": float(np.finfo(np.float32).eps), "double": float(np.finfo(np.float64).eps)}
+    places = np.concatenate([one.position for one in case.sets])
+    extent = float(np.ptp(places, axis=0).max())
+    resolution = eps[case.scene.numerics.precision] * extent + eps["double"] * distance
+    speed = STEPS * resolution / SMOOTHING_LENGTH * SOUND_SPEED
+    units = {"velocity": speed, "density": speed * DENSITY / SOUND_SPEED, "position": speed * DURATION}
+    return {
+        name: float(np.abs(getattr(found, name) - getattr(expected, name)).max(initial=0.0) / unit)
+        for name, unit in units.items()
+    }
+
+
+def seen_back(state: State, matrix: np.ndarray, shift: np.ndarray | float = 0.0) -> State:
+    """A state seen from the axes and the place that `turned` has left."""
+    return State((state.position - shift) @ matrix, state.velocity @ matrix, state.density)
