@@ -15,6 +15,8 @@ FIELD_UNITS: dict[str, str] = {
     "mass": "kg",
     "volume": "m3",
     "force": "N",
+    "viscous_force": "N",
+    "wall_shear_stress": "Pa",
     "vorticity": "1/s",
     "displacement": "m",
     "reaction": "N",

@@ -6,6 +6,7 @@ from typing import Any
 from warpsph.probes.displacement import DisplacementProbe
 from warpsph.probes.energy import EnergyProbe
 from warpsph.probes.force import ForceProbe
+from warpsph.probes.force_coefficients import ForceCoefficientsProbe
 from warpsph.probes.front import FrontProbe
 from warpsph.probes.momentum import MomentumProbe
 from warpsph.probes.point import PointProbe
@@ -28,6 +29,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "wall_pressure": WallPressureProbe,
     "point": PointProbe,
     "force": ForceProbe,
+    "force_coefficients": ForceCoefficientsProbe,
     "energy": EnergyProbe,
     "volume": VolumeProbe,
     "displacement": DisplacementProbe,

@@ -145,6 +145,52 @@ class ForceProbe(_OnSolid):
         return _force_columns(dimension)
 
 
+class ForceCoefficientsProbe(_Probe):
+    """Drag, lift and moment of the fluid on walls and structures together.
+
+    A force has the coefficient c = 2 F / (rho U^2 L), in space over the span as well: 2 F / (rho U^2 L b); a moment has
+    another L below. The moment is about the direction of drag x lift, which is z in the plane.
+    """
+
+    type: Literal["force_coefficients"] = "force_coefficients"
+    boundaries: tuple[Name, ...] = ()
+    """Walls that count. Default: none."""
+
+    structures: tuple[Name, ...] = ()
+    """Structures that count. Default: none."""
+
+    speed: PositiveReal
+    """Reference speed U, such as that of the inflow [m/s]."""
+
+    length: PositiveReal
+    """Reference length L, such as a diameter or a chord [m]."""
+
+    span: PositiveReal | None = None
+    """Reference length b across the plane of the flow [m]; in three dimensions only. Default: null."""
+
+    density: PositiveReal | None = None
+    """Reference density rho [kg/m3]; null: that of the fluid. Default: null."""
+
+    drag: Vector | None = None
+    """Direction of drag, of any length; null: along x. Default: null."""
+
+    lift: Vector | None = None
+    """Direction of lift, across that of drag; null: along y. Default: null."""
+
+    about: Vector | None = None
+    """Point about which the moment is taken [m]; null: the centre of mass at the start. Default: null."""
+
+    def direction(self, force: Literal["drag", "lift"], dimension: int) -> tuple[float, ...]:
+        """Direction of drag or of lift, of any length."""
+        usual = tuple(float(k == ("drag", "lift").index(force)) for k in range(dimension))
+        return tuple(getattr(self, force) or usual)
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "N/m" if dimension == 2 else "N"
+        coefficients = ("drag", "lift", "moment", "viscous_drag", "viscous_lift")
+        return (*(f"{name}[1]" for name in coefficients), f"drag_force[{unit}]", f"lift_force[{unit}]")
+
+
 class EnergyProbe(_Probe):
     """Energies of all fluids together."""
 
@@ -289,6 +335,7 @@ Probe = Annotated[
     | WallPressureProbe
     | PointProbe
     | ForceProbe
+    | ForceCoefficientsProbe
     | EnergyProbe
     | VolumeProbe
     | DisplacementProbe

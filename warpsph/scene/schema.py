@@ -47,6 +47,7 @@ OutputField = Literal[
     "mass",
     "vorticity",
     "free_surface",
+    "wall_shear_stress",
     "displacement",
     "cauchy_stress",
     "von_mises",
@@ -187,7 +188,8 @@ class Output(SceneModel):
     fields: tuple[OutputField, ...] = ("velocity", "density", "pressure", "displacement", "von_mises")
     """Fields in the frames beside position and id, each where a set has it: velocity [m/s], mass [kg]; of fluids
     density [kg/m3], pressure [Pa], vorticity [1/s] and free_surface (1 there, else 0); of structures displacement [m],
-    cauchy_stress and von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1].
+    cauchy_stress and von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1]; of walls and structures, where they
+    are no_slip and the viscosity is laminar, wall_shear_stress [Pa].
     Default: velocity, density, pressure, displacement, von_mises."""
 
     checkpoint_every: PositiveInteger | None = None

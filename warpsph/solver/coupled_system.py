@@ -21,8 +21,9 @@ from warpsph.solver.rigid_assembly import density_of
 from warpsph.solver.structure_system import StructureSystem
 from warpsph.solver.system import StepReport
 
-ON_FACES = ("force", "pressure")
+ON_FACES = ("force", "pressure", "viscous_force", "wall_shear_stress")
 """Fields that structures have only in a fluid."""
+USUAL_ON_FACES = ("force", "pressure")
 STRUCTURE = "structure_"
 """Before the names of arrays, extremes and saved values of structures."""
 
@@ -36,7 +37,7 @@ class CoupledSystem:
         self.fluid = FluidSystem(scene, sampled, launcher, self.structure.parts)
         faces = self.fluid.parts.faces
         assert faces is not None
-        self._faces = faces
+        self._faces, self._face_fields = faces, self.fluid.wall_fields(faces.model.walls)
         self._bodies = [s for s in sampled if s.kind == "structure"]
         self.stepper = CoupledStepper(
             scene, self.fluid.stepper, self.structure.stepper, faces, self._inertial_step()
@@ -99,22 +100,28 @@ class CoupledSystem:
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
         """Fields of fluids and walls as without structures; structures have also the force of the fluid on each
-        particle and the pressure that its first face shows."""
+        particle, its viscous part, and the pressure and the shear stress that the particle's first face shows."""
         unknown = sorted(set(fields or ()) - self.fields)
         if unknown:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(sorted(self.fields))}")
         flowing = self.fluid.frame_sets(_among(fields, self.fluid.fields), ordered)
         solid = self.structure.frame_sets(_among(fields, self.structure.fields), ordered)
-        of_fluid = {name: self._of_fluid(name) for name in ON_FACES if fields is None or name in fields}
+        asked = USUAL_ON_FACES if fields is None else fields
+        of_fluid = {name: self._of_fluid(name) for name in ON_FACES if name in asked}
         return (*flowing, *(self._with(of_fluid, body) for body in solid))
 
     def _of_fluid(self, field: str) -> np.ndarray:
-        """What the fluid does to each structure particle: its force [N], or the pressure of its first face [Pa]."""
-        if field == "force":
-            return self._faces.faces.sums(host_view(self._faces.model.react()))
-        assembly = self.fluid.parts.assembly
+        """What the fluid does to each structure particle: forces [N], and the stresses on its first face [Pa]."""
+        faces, assembly = self._faces.faces, self.fluid.parts.assembly
+        match field:
+            case "force":
+                return faces.sums(host_view(self._faces.model.react()))
+            case "viscous_force":
+                return faces.sums(self._face_fields.viscous_force())
+            case "wall_shear_stress":
+                return faces.first_faces(self._face_fields.shear_stress())
         pressure = host_view(assembly.scratch.position_pressure)[assembly.layout.first_face :, -1]
-        return self._faces.faces.first_faces(pressure)
+        return faces.first_faces(pressure)
 
     def _with(self, columns: Mapping[str, np.ndarray], body: SetFrame) -> SetFrame:
         """The particles of a structure with further columns over all structures."""

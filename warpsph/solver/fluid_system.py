@@ -11,10 +11,12 @@ import warp as wp
 from warpsph.frame import SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import arrays_of, host_view, write_array
+from warpsph.physics.assembly import WallRange
 from warpsph.physics.flow_fields import FlowFields
+from warpsph.physics.wall_fields import WallFields
 from warpsph.sampling import SampledSet
 from warpsph.scene.schema import Scene
-from warpsph.solver.assemble import FLUID, assemble
+from warpsph.solver.assemble import FLUID, WallParts, assemble
 from warpsph.solver.describe import describe
 from warpsph.solver.guards import check_state
 from warpsph.solver.ledger import Ledger, sum_up
@@ -25,10 +27,10 @@ from warpsph.solver.system import StepReport, in_order
 ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
 FIELDS = (
     *("position", "velocity", "density", "pressure", "volume", "mass", "force", "id"),
-    *("vorticity", "free_surface"),
+    *("vorticity", "free_surface", "viscous_force", "wall_shear_stress"),
 )
 OF_FLUIDS = ("density", "mass", "vorticity", "free_surface")
-OF_WALLS = ("force",)
+OF_WALLS = ("force", "viscous_force", "wall_shear_stress")
 USUAL_FIELDS = ("position", "velocity", "density", "pressure", "mass")
 NOTABLE_MACH = 0.2
 """Speed over sound speed from which compressibility shows (density errors of four per cent)."""
@@ -51,6 +53,8 @@ class FluidSystem:
         self._shown = [s for s in sampled if s.kind != "structure"]
         self.parts = assemble(scene, sampled, launcher, structures)
         self._flow_fields = FlowFields(self.parts.assembly, self.parts.search.rows[FLUID])
+        walls = self.parts.walls
+        self._wall_fields = self.wall_fields(walls.model.walls) if walls else None
         self.stepper = Stepper(scene, self.parts)
         self.stepper.start()
 
@@ -108,7 +112,7 @@ class FluidSystem:
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
         """Fields: position, velocity, pressure, volume; of fluids also density, mass, vorticity, free_surface; of walls
-        also force."""
+        also force, viscous_force, wall_shear_stress."""
         self.stepper.synchronise()
         columns = self._columns({"position", *(USUAL_FIELDS if fields is None else fields)})
         index = np.array(self._host("set_index"))
@@ -116,6 +120,10 @@ class FluidSystem:
         return tuple(
             self._set_frame(k, sampled, columns, index, ordered) for k, sampled in enumerate(self._shown)
         )
+
+    def wall_fields(self, walls: WallRange) -> WallFields:
+        """The fields of a range of wall particles."""
+        return WallFields(self.parts.assembly, walls, self.parts.fluid.react)
 
     def ledger(self) -> Ledger:
         """Totals over all fluids."""
@@ -187,7 +195,9 @@ class FluidSystem:
             "pressure": lambda: pressure[:, -1],
             "volume": lambda: velocity_volume[:, -1],
             "mass": lambda: np.full(a.layout.total, a.constants.mass),
-            "force": self._wall_force,
+            "force": lambda: self._of_walls(lambda walls, _: host_view(walls.model.react())),
+            "viscous_force": lambda: self._of_walls(lambda _, fields: fields.viscous_force()),
+            "wall_shear_stress": lambda: self._of_walls(lambda _, fields: fields.shear_stress()),
             "vorticity": self._flow_fields.vorticity,
             "free_surface": self._flow_fields.free_surface,
         }
@@ -196,12 +206,13 @@ class FluidSystem:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(makers)}, id")
         return {name: makers[name]() for name in names - {"id"}} | {"id": self._host("id")}
 
-    def _wall_force(self) -> np.ndarray:
+    def _of_walls(self, find: Callable[[WallParts, WallFields], np.ndarray]) -> np.ndarray:
+        """Vectors that walls have, with zeros for all other particles."""
         layout = self.parts.assembly.layout
-        force = np.zeros((layout.total, self._scene.dimension))
-        if self.parts.walls:
-            force[layout.fluids : layout.first_face] = host_view(self.parts.walls.model.react())
-        return force
+        vectors = np.zeros((layout.total, self._scene.dimension))
+        if self.parts.walls and self._wall_fields:
+            vectors[layout.fluids : layout.first_face] = find(self.parts.walls, self._wall_fields)
+        return vectors
 
     def _set_frame(
         self, k: int, sampled: SampledSet, columns: Mapping[str, np.ndarray], index: np.ndarray, ordered: bool

@@ -63,9 +63,9 @@ class Stepper:
             self._faces.faces.place(NOW)
 
     def find_wall_surface(self, walls: WallParts) -> None:
-        """Find the normals that keep fluid out of the walls, where the wall method needs them."""
-        table = self._parts.tables.wall
-        if self._parts.assembly.options.has_barrier and table is not None:
+        """Find the normals that keep fluid out of the walls, and along which it shears them."""
+        table, options = self._parts.tables.wall, self._parts.assembly.options
+        if (options.has_barrier or options.wall_friction) and table is not None:
             rows = self._search.list_once(table, table)
             walls.motion.find_surface(rows, self._search.listed_position, self._spacing)
 

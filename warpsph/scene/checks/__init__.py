@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from warpsph.scene.checks.accuracy import accuracy_problems
 from warpsph.scene.checks.common import DeclaredNames
+from warpsph.scene.checks.force_coefficients import coefficient_problems
 from warpsph.scene.checks.geometry import geometry_problems
 from warpsph.scene.checks.references import probe_problems, reference_problems
 from warpsph.scene.checks.sets import boundary_problems, fluid_problems
@@ -49,6 +50,7 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
         yield from geometry_problems(scene)
     yield from settings_problems(scene)
     yield from probe_problems(scene, names)
+    yield from coefficient_problems(scene, names)
     yield from reference_problems(scene, names)
     yield from accuracy_problems(scene, names)
 

@@ -16,6 +16,7 @@ from warpsph.scene.errors import Problem
 from warpsph.scene.probes import (
     DisplacementProbe,
     EnergyProbe,
+    ForceCoefficientsProbe,
     ForceProbe,
     FrontProbe,
     MomentumProbe,
@@ -223,9 +224,18 @@ def figure_problems(figure: Figure, scene: Scene, names: DeclaredNames, key: str
     needs_threshold = figure.feature in ("arrival", "first_peak", "first_peak_time")
     if needs_threshold and figure.threshold is None:
         yield Problem.at(f"{key}.threshold", f"{figure.feature} needs it", "a number, in the column's unit")
+    if figure.feature == "strouhal":
+        yield from _strouhal_problems(figure, scene, key)
     if not needs_threshold and figure.threshold is not None:
         message = f"{figure.feature} has no threshold"
         yield Problem.at(f"{key}.threshold", message, "null", figure.threshold)
+
+
+def _strouhal_problems(figure: Figure, scene: Scene, key: str) -> Iterator[Problem]:
+    probe = scene.probes.get(figure.column.partition(".")[0])
+    if probe is not None and not isinstance(probe, ForceCoefficientsProbe):
+        message = "a Strouhal number needs the length and the speed of a probe of force coefficients"
+        yield Problem.at(f"{key}.column", message, "a column of such a probe", figure.column)
 
 
 def _feature_problems(reference: FeatureReference, key: str) -> Iterator[Problem]:

@@ -28,6 +28,21 @@ def settings_problems(scene: Scene) -> Iterator[Problem]:
     yield from _time_problems(scene)
     yield from _numerics_problems(scene)
     yield from repeated_problems("output.fields", scene.output.fields)
+    yield from _shear_problems(scene)
+
+
+def _shear_problems(scene: Scene) -> Iterator[Problem]:
+    """A wall shear stress where no wall has one."""
+    if "wall_shear_stress" not in scene.output.fields:
+        return
+    key, viscosity = "output.fields", scene.numerics.viscosity.type
+    if viscosity not in _NEED_VISCOSITY:
+        message = f"wall_shear_stress needs the viscosity of the fluid, which {viscosity} does not know"
+        yield Problem.at(key, message, "numerics.viscosity.type: " + " or ".join(_NEED_VISCOSITY))
+    slips = [wall.slip for wall in scene.boundaries.values()] + [s.slip for s in scene.structures.values()]
+    if "no_slip" not in slips:
+        message = "nothing is sheared: no wall and no structure has slip: no_slip"
+        yield Problem.at(key, message, "fields without wall_shear_stress")
 
 
 def _time_problems(scene: Scene) -> Iterator[Problem]:
