@@ -8,6 +8,7 @@ from warpsph.probes.energy import EnergyProbe
 from warpsph.probes.force import ForceProbe
 from warpsph.probes.force_coefficients import ForceCoefficientsProbe
 from warpsph.probes.front import FrontProbe
+from warpsph.probes.line import LineProbe
 from warpsph.probes.momentum import MomentumProbe
 from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
@@ -28,6 +29,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "water_level": WaterLevelProbe,
     "wall_pressure": WallPressureProbe,
     "point": PointProbe,
+    "line": LineProbe,
     "force": ForceProbe,
     "force_coefficients": ForceCoefficientsProbe,
     "energy": EnergyProbe,

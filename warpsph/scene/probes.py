@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from warpsph.scene.shapes import Bounds
-from warpsph.scene.types import AXES, Axis, Name, PositiveReal, Real, SceneModel, Vector
+from warpsph.scene.types import AXES, Axis, Integer, Name, PositiveReal, Real, SceneModel, Vector
 
 STRUCTURE_ENERGIES = (
     "kinetic",
@@ -132,6 +132,35 @@ class PointProbe(_Probe):
             "density": ("density[kg/m3]",),
         }
         return tuple(column for field in self.fields for column in columns[field])
+
+
+class LineProbe(_Probe):
+    """Fluid fields at evenly spaced points of a line, numbered from 0: velocity_x_0, velocity_x_1 and so on."""
+
+    type: Literal["line"] = "line"
+    start: Vector
+    """The first point [m]."""
+
+    end: Vector
+    """The last point [m]."""
+
+    points: Annotated[Integer, Field(ge=2, le=1000)] = 2
+    """How many points, the two ends included. Default: 2."""
+
+    fields: Annotated[tuple[PointField, ...], Field(min_length=1)] = ("pressure", "velocity")
+    """What to interpolate: pressure [Pa], velocity [m/s], density [kg/m3]. Default: pressure and velocity."""
+
+    @property
+    def at(self) -> tuple[tuple[float, ...], ...]:
+        """Where the points are [m]."""
+        parts = [k / (self.points - 1) for k in range(self.points)]
+        ends = tuple(zip(self.start, self.end, strict=True))
+        return tuple(tuple((1.0 - part) * a + part * b for a, b in ends) for part in parts)
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        of_point = PointProbe(at=(0.0,) * dimension, fields=self.fields).quantities(dimension)
+        parts = [column.partition("[") for column in of_point]
+        return tuple(f"{name}_{k}[{unit}" for k in range(self.points) for name, _, unit in parts)
 
 
 class ForceProbe(_OnSolid):
@@ -334,6 +363,7 @@ Probe = Annotated[
     | WaterLevelProbe
     | WallPressureProbe
     | PointProbe
+    | LineProbe
     | ForceProbe
     | ForceCoefficientsProbe
     | EnergyProbe

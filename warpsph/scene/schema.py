@@ -22,6 +22,7 @@ from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
 from warpsph.scene.probes import Probe
+from warpsph.scene.recordings import FlowStatistics, Paths
 from warpsph.scene.references import Reference
 from warpsph.scene.shapes import Bounds, Shape
 from warpsph.scene.structures import Contact, Coupling, Structure
@@ -191,6 +192,12 @@ class Output(SceneModel):
     cauchy_stress and von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1]; of walls and structures, where they
     are no_slip and the viscosity is laminar, wall_shear_stress [Pa].
     Default: velocity, density, pressure, displacement, von_mises."""
+
+    statistics: FlowStatistics | None = None
+    """Averages over time of velocity and pressure on a grid, in statistics.h5; null: none. Default: null."""
+
+    paths: Annotated[Mapping[Name, Paths], _NAMED] = {}
+    """Paths of chosen particles, by name, in paths.h5 and paths.usdc. Default: none."""
 
     checkpoint_every: PositiveInteger | None = None
     """Frames between checkpoints [1]; null: about every tenth of the run, and at the end. Default: null."""

@@ -19,6 +19,7 @@ from warpsph.scene.probes import (
     ForceCoefficientsProbe,
     ForceProbe,
     FrontProbe,
+    LineProbe,
     MomentumProbe,
     PointProbe,
     Probe,
@@ -63,7 +64,7 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
-        if isinstance(probe, PointProbe):
+        if isinstance(probe, PointProbe | LineProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
 
 
@@ -100,7 +101,15 @@ def _rotation_problems(probe: RotationProbe, scene: Scene, key: str) -> Iterator
 def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
     """Probes that look at everything of a kind of which the scene has nothing."""
     match probe:
-        case FrontProbe() | ReachProbe() | WaterLevelProbe() | PointProbe() | EnergyProbe() | VolumeProbe():
+        case (
+            FrontProbe()
+            | ReachProbe()
+            | WaterLevelProbe()
+            | PointProbe()
+            | LineProbe()
+            | EnergyProbe()
+            | VolumeProbe()
+        ):
             kind, there = "fluid", names.fluids
         case StructureEnergyProbe():
             kind, there = "structure", names.structures
