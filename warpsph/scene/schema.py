@@ -21,6 +21,7 @@ from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
+from warpsph.scene.open_boundaries import OpenBoundary
 from warpsph.scene.probes import Probe
 from warpsph.scene.references import Reference
 from warpsph.scene.shapes import Bounds, Shape
@@ -239,6 +240,9 @@ class Scene(SceneModel):
 
     boundaries: Annotated[Mapping[Name, Boundary], _NAMED] = {}
     """Walls by name. Default: none."""
+
+    open_boundaries: Annotated[Mapping[Name, OpenBoundary], _NAMED] = {}
+    """Patches through which fluid enters and leaves, by name. Default: none."""
 
     structures: Annotated[Mapping[Name, Structure], _NAMED] = {}
     """Flexible structures by name. Default: none."""
