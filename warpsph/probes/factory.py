@@ -5,6 +5,7 @@ from typing import Any
 
 from warpsph.probes.displacement import DisplacementProbe
 from warpsph.probes.energy import EnergyProbe
+from warpsph.probes.flux import FluxProbe
 from warpsph.probes.force import ForceProbe
 from warpsph.probes.force_coefficients import ForceCoefficientsProbe
 from warpsph.probes.front import FrontProbe
@@ -40,6 +41,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "rigid_body": RigidBodyProbe,
     "structure_energy": StructureEnergyProbe,
     "momentum": MomentumProbe,
+    "flux": FluxProbe,
 }
 
 

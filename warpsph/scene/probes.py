@@ -351,6 +351,20 @@ class MomentumProbe(_Probe):
         return linear + tuple(f"angular_momentum_{axis}[kg m2/s]" for axis in AXES)
 
 
+class FluxProbe(_Probe):
+    """What passes an open boundary into the domain: mass a second and its integral, from the velocity on the patch at
+    the rest density, and the mass of the particles that have entered less that of those that have left."""
+
+    type: Literal["flux"] = "flux"
+    patch: Name
+    """Name of the open boundary."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "kg/m" if dimension == 2 else "kg"
+        rate = "kg/(m s)" if dimension == 2 else "kg/s"
+        return (f"flux[{rate}]", f"mass[{unit}]", f"counted_mass[{unit}]")
+
+
 def _force_columns(dimension: int) -> tuple[str, ...]:
     if dimension == 2:
         return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
@@ -373,6 +387,7 @@ Probe = Annotated[
     | ReactionProbe
     | RigidBodyProbe
     | StructureEnergyProbe
-    | MomentumProbe,
+    | MomentumProbe
+    | FluxProbe,
     Field(discriminator="type"),
 ]

@@ -21,6 +21,7 @@ from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
+from warpsph.scene.open_boundaries import OpenBoundary
 from warpsph.scene.probes import Probe
 from warpsph.scene.recordings import FlowStatistics, Paths
 from warpsph.scene.references import Reference
@@ -248,6 +249,9 @@ class Scene(SceneModel):
 
     boundaries: Annotated[Mapping[Name, Boundary], _NAMED] = {}
     """Walls by name. Default: none."""
+
+    open_boundaries: Annotated[Mapping[Name, OpenBoundary], _NAMED] = {}
+    """Patches through which fluid enters and leaves, by name. Default: none."""
 
     structures: Annotated[Mapping[Name, Structure], _NAMED] = {}
     """Flexible structures by name. Default: none."""

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warpsph.frame import SetFrame
+from warpsph.frame import Inflow, SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import host_view
 from warpsph.physics.material import material, smoothing_length
@@ -35,13 +35,24 @@ class CoupledSystem:
         self._scene = scene
         self.structure = StructureSystem(scene, sampled, launcher)
         self.fluid = FluidSystem(scene, sampled, launcher, self.structure.parts)
+        self._bodies = [s for s in sampled if s.kind == "structure"]
+        self._couple()
+
+    def _couple(self) -> None:
+        """Make the step that fluid and structures share; needed again when the fluid has been assembled anew."""
         faces = self.fluid.parts.faces
         assert faces is not None
         self._faces, self._face_fields = faces, self.fluid.wall_fields(faces.model.walls)
-        self._bodies = [s for s in sampled if s.kind == "structure"]
         self.stepper = CoupledStepper(
-            scene, self.fluid.stepper, self.structure.stepper, faces, self._inertial_step()
+            self._scene, self.fluid.stepper, self.structure.stepper, faces, self._inertial_step()
         )
+
+    def _grow(self) -> None:
+        """Give the fluid more places."""
+        before = self.stepper
+        self.fluid.grow()
+        self._couple()
+        self.stepper.target, self.stepper.lead, self.stepper.size = before.target, before.lead, before.size
 
     def _inertial_step(self) -> float:
         """The longest step of the fluid [s] beside the lightest structure."""
@@ -89,6 +100,8 @@ class CoupledSystem:
         return {**self.fluid.arrays, **_prefixed(self.structure.arrays)}
 
     def step(self, step_count: int) -> StepReport:
+        if self.fluid.is_short_of_places:
+            self._grow()
         report = self.stepper.step()
         self.fluid.check(step_count, report)
         if self.structure.stepper.failed:
@@ -139,6 +152,10 @@ class CoupledSystem:
     def warnings(self, largest: Mapping[str, float]) -> list[str]:
         return [*self.fluid.warnings(largest), *self.structure.warnings(_own(largest))]
 
+    def inflows(self) -> dict[str, Inflow]:
+        """What has passed the open boundaries, by name."""
+        return self.fluid.inflows()
+
     def describe(self) -> dict[str, Any]:
         fluid, structure = self.fluid.describe(), self.structure.describe()
         bytes_used = sum(d["bytes_per_particle"] * d["particles"] for d in (fluid, structure))
@@ -166,6 +183,9 @@ class CoupledSystem:
     def load(self, saved: Mapping[str, Any]) -> None:
         self.structure.load(_own(saved))
         self.fluid.load(saved)
+        target = self.stepper.target
+        self._couple()
+        self.stepper.target = target
         self.stepper.lead, self.stepper.size = float(saved["lead"]), float(saved["size"])
 
 

@@ -16,6 +16,7 @@ from warpsph.scene.errors import Problem
 from warpsph.scene.probes import (
     DisplacementProbe,
     EnergyProbe,
+    FluxProbe,
     ForceCoefficientsProbe,
     ForceProbe,
     FrontProbe,
@@ -64,6 +65,8 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
+        if isinstance(probe, FluxProbe) and probe.patch not in names.open_boundaries:
+            yield unknown_name(f"{key}.patch", "open boundary", probe.patch, names.open_boundaries)
         if isinstance(probe, PointProbe | LineProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
 
