@@ -18,6 +18,7 @@ FIELD_UNITS: dict[str, str] = {
     "viscous_force": "N",
     "wall_shear_stress": "Pa",
     "vorticity": "1/s",
+    "age": "s",
     "displacement": "m",
     "reaction": "N",
     "cauchy_stress": "Pa",

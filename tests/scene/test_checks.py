@@ -110,6 +110,7 @@ TOGETHER = [
      "output.fields", "which artificial does not know"),
     (["output.fields=[wall_shear_stress]", "numerics.viscosity={type: laminar}"],
      "output.fields", "nothing is sheared"),
+    (["output.fields=[age]"], "output.fields", "no open boundaries"),
 ]  # fmt: skip
 
 

@@ -22,6 +22,7 @@ from warpsph.particles.state import HostTable
 from warpsph.physics.assembly import Assembly
 from warpsph.physics.fluid import FluidModel
 from warpsph.physics.material import smoothing_length
+from warpsph.physics.residence import ResidenceModel
 from warpsph.sampling.patch_laws import PatchLaw, patch_laws
 from warpsph.sampling.patches import Patch, patches_of
 from warpsph.sampling.walls import period_of
@@ -54,6 +55,8 @@ class OpenBoundaryModel:
         self.stations = sum(len(patch.stations) for patch in self.patches)
         self._spans = _spans(self.patches)
         self._allocate()
+        asked = "age" in scene.output.fields
+        self._residence = ResidenceModel(assembly, self.tag) if asked else None
         self.device_patches = self._make_patches(list(scene.open_boundaries.values()))
         self._place_stations(smoothing_length(scene))
         self._bind()
@@ -63,7 +66,8 @@ class OpenBoundaryModel:
     @property
     def own_arrays(self) -> dict[str, wp.array]:
         """Arrays of shape (places,) that follow the order of the fluid and belong into a checkpoint."""
-        return {"patch": self.tag}
+        ages = {"age": self._residence.age} if self._residence else {}
+        return {"patch": self.tag} | ages
 
     @property
     def kept_arrays(self) -> dict[str, wp.array]:
@@ -105,6 +109,11 @@ class OpenBoundaryModel:
     def hold_density(self) -> None:
         """Keep the density of particles in buffers."""
         self._hold_density.run(self._tagged_count)
+
+    def grow_older(self) -> None:
+        """Let the particles in the domain grow older by a step, where the scene asks for their age."""
+        if self._residence:
+            self._residence.grow_older(self._fluid.count)
 
     def prescribe(self, end: float, middle: float) -> None:
         """Write what is prescribed at the stations, where that changes over time or has not been written."""

@@ -49,6 +49,7 @@ OutputField = Literal[
     "mass",
     "vorticity",
     "free_surface",
+    "age",
     "wall_shear_stress",
     "displacement",
     "cauchy_stress",
@@ -189,9 +190,10 @@ class Output(SceneModel):
 
     fields: tuple[OutputField, ...] = ("velocity", "density", "pressure", "displacement", "von_mises")
     """Fields in the frames beside position and id, each where a set has it: velocity [m/s], mass [kg]; of fluids
-    density [kg/m3], pressure [Pa], vorticity [1/s] and free_surface (1 there, else 0); of structures displacement [m],
-    cauchy_stress and von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1]; of walls and structures, where they
-    are no_slip and the viscosity is laminar, wall_shear_stress [Pa].
+    density [kg/m3], pressure [Pa], vorticity [1/s], free_surface (1 there, else 0) and, between open boundaries, age
+    [s], the time since a particle came in or since the start; of structures displacement [m], cauchy_stress and
+    von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1]; of walls and structures, where they are no_slip and
+    the viscosity is laminar, wall_shear_stress [Pa].
     Default: velocity, density, pressure, displacement, von_mises."""
 
     statistics: FlowStatistics | None = None

@@ -31,7 +31,7 @@ FIELDS = (
     *("position", "velocity", "density", "pressure", "volume", "mass", "force", "id"),
     *("vorticity", "free_surface", "viscous_force", "wall_shear_stress"),
 )
-OF_FLUIDS = ("density", "mass", "vorticity", "free_surface")
+OF_FLUIDS = ("density", "mass", "vorticity", "free_surface", "age")
 OF_WALLS = ("force", "viscous_force", "wall_shear_stress")
 USUAL_FIELDS = ("position", "velocity", "density", "pressure", "mass")
 NOTABLE_MACH = 0.2
@@ -104,7 +104,7 @@ class FluidSystem:
 
     @property
     def fields(self) -> frozenset[str]:
-        return frozenset(FIELDS)
+        return frozenset({*FIELDS, *self._open_fields})
 
     @property
     def arrays(self) -> Mapping[str, wp.array]:
@@ -267,10 +267,20 @@ class FluidSystem:
             "vorticity": self._flow_fields.vorticity,
             "free_surface": self._flow_fields.free_surface,
         }
+        makers |= self._open_fields
         unknown = sorted(names - {"id", *makers})
         if unknown:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(makers)}, id")
         return {name: makers[name]() for name in names - {"id"}} | {"id": self._host("id")}
+
+    @property
+    def _open_fields(self) -> dict[str, Callable[[], np.ndarray]]:
+        """What makes the fields that fluid has between open boundaries, with zeros for walls."""
+        opened, layout = self.parts.open_boundaries, self.parts.assembly.layout
+        ages = opened.model.own_arrays.get("age") if opened else None
+        if ages is None:
+            return {}
+        return {"age": lambda: np.pad(host_view(ages), (0, layout.total - len(ages)))}
 
     def _of_walls(self, find: Callable[[WallParts, WallFields], np.ndarray]) -> np.ndarray:
         """Vectors that walls have, with zeros for all other particles."""

@@ -109,6 +109,7 @@ class Stepper:
         self._fluid.update_density()
         if self._open:
             self._open.model.hold_density()
+            self._open.model.grow_older()
         self.update_wall_density()
         self.survey()
 

@@ -30,6 +30,9 @@ def settings_problems(scene: Scene) -> Iterator[Problem]:
     yield from repeated_problems("output.fields", scene.output.fields)
     yield from _shear_problems(scene)
     yield from _recording_problems(scene)
+    if "age" in scene.output.fields and not scene.open_boundaries:
+        message = "all fluid has the age of the run: the scene has no open boundaries"
+        yield Problem.at("output.fields", message, "fields without age")
 
 
 def _recording_problems(scene: Scene) -> Iterator[Problem]:
