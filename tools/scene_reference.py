@@ -75,6 +75,7 @@ OBJECTS = (
     ("numerics", "Numerics"),
     ("fluids.*", "Fluid"),
     ("boundaries.*", "Boundary"),
+    ("open_boundaries.*.shape", "PatchShape"),
     ("structures.*", "Structure"),
     ("structures.*.material", "Material"),
     ("structures.*.rigid", "Rigid"),
@@ -98,6 +99,8 @@ UNIONS = (
     ("Viscosity laws", "`law` of a viscous stress", ("ViscousStress", "law")),
     ("Particle order", "`numerics.particle_order`", ("Numerics", "particle_order")),
     ("Wall methods", "`numerics.wall`", ("Numerics", "wall")),
+    ("Open boundaries", "each value of `open_boundaries`", None),
+    ("Velocity profiles", "`velocity` of open boundaries", ("VelocityBoundary", "velocity")),
     ("Initial pressure", "`pressure` of fluids", ("Fluid", "pressure")),
     ("Loads", "each value of `loads` of structures", ("Structure", "loads")),
     ("Solutions", "`numerics.structure.solution`", ("StructureNumerics", "solution")),
@@ -107,6 +110,7 @@ UNIONS = (
 PARTS = (
     ("Bounds", "`bounds` of a plane, `domain.kill_box`", "Bounds"),
     ("Rotation", "`rotate` of a transform", "Rotation"),
+    ("History in a file", "`history` of open boundaries", "HistoryTable"),
     ("Figure", "`accuracy.quantity`", "Figure"),
     ("Table in the scene", "`table` of a series reference", "InlineTable"),
     ("Table in a file", "`table` of a series reference", "FileTable"),
@@ -122,7 +126,7 @@ def page() -> str:
         blocks += [f"\n## `{key}`\n", f"{_text(_definition(name))}\n", *_table(_definition(name))]
     for title, place, source in UNIONS:
         blocks += [f"\n## {title}\n", f"Chosen by `type`: {place}.\n"]
-        for tag, node in _choices(_union(title.lower(), source)):
+        for tag, node in _choices(_union(title.lower().replace(" ", "_"), source)):
             blocks += [f"\n### `{tag}`\n", f"{_text(node)}{_columns(tag, title)}\n", *_table(node)]
     for title, place, name in PARTS:
         blocks += [

@@ -1,7 +1,7 @@
 """The state of every particle set at one time, as handed to writers, probes and callbacks."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -15,7 +15,10 @@ FIELD_UNITS: dict[str, str] = {
     "mass": "kg",
     "volume": "m3",
     "force": "N",
+    "viscous_force": "N",
+    "wall_shear_stress": "Pa",
     "vorticity": "1/s",
+    "age": "s",
     "displacement": "m",
     "reaction": "N",
     "cauchy_stress": "Pa",
@@ -57,14 +60,33 @@ class SetFrame:
 
 
 @dataclass(frozen=True)
+class Inflow:
+    """What has passed an open boundary into the domain; in 2D per metre of depth.
+
+    flux: mass that enters a second [kg/s]; mass: its integral over time [kg], at the rest density; counted_mass: of the
+    particles that have entered less those that have left [kg]; entered, left, removed: particles that have entered the
+    domain from the buffer, left it into the buffer, and left the buffer at its far end.
+    """
+
+    flux: float
+    mass: float
+    counted_mass: float
+    entered: int
+    left: int
+    removed: int
+
+
+@dataclass(frozen=True)
 class Frame:
-    """All particle sets at one time [s]; `index` numbers the frames of a run from 0, `spacing` is in m."""
+    """All particle sets at one time [s], and what has passed the open boundaries; `index` numbers the frames of a run
+    from 0, `spacing` is in m."""
 
     index: int
     time: float
     dimension: int
     spacing: float
     sets: tuple[SetFrame, ...]
+    inflows: Mapping[str, Inflow] = field(default_factory=dict)
 
     def set_named(self, name: str) -> SetFrame:
         """The set of that name; KeyError names the sets there are."""

@@ -21,6 +21,7 @@ boundaries:
 probes:
   front: {type: front, axis: x}
   energy: {type: energy}
+  body: {type: force_coefficients, boundaries: [tank], speed: 2.0, length: 0.5}
 references: %s
 """
 

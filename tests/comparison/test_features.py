@@ -133,3 +133,52 @@ def test_the_extreme_of_an_angle_is_found_beyond_a_turn() -> None:
     unrolled = row_of(wrapped, feature="maximum_time", value=1.0, bound=1e-6, unroll=2.0 * np.pi)
     assert unrolled.holds is True
     assert row_of(wrapped, feature="maximum_time", value=1.0, bound=1e-6).holds is False
+
+
+SWING = 3.0 + 2.0 * np.sin(2.0 * np.pi * TIMES / 0.25) * np.where(TIMES < 1.1, 3.0, 1.0)
+"""Eight periods of 0.25 s; the first five and a half swing three times as far."""
+
+
+def test_frequency_is_one_over_the_period() -> None:
+    """The mean of a swing that becomes smaller is not quite its centre: passages shift by 1e-3 of a period."""
+    assert row_of(SWING, feature="frequency", value=4.0).value == pytest.approx(4.0, rel=2e-3)
+
+
+def test_last_periods_leave_out_what_was_before() -> None:
+    """Within two samples' worth: the curve is known at every fiftieth of a period."""
+    recent = {"periods": 2, "value": 1.0}
+    assert row_of(SWING, feature="amplitude", **recent).value == pytest.approx(2.0, rel=0.01)
+    assert row_of(SWING, feature="centre", **recent).value == pytest.approx(3.0, rel=0.01)
+    assert row_of(SWING, feature="mean", **recent).value == pytest.approx(3.0, rel=0.01)
+    assert row_of(SWING, feature="frequency", **recent).value == pytest.approx(4.0, rel=0.01)
+    assert row_of(SWING, feature="amplitude", value=1.0).value == pytest.approx(6.0, rel=0.01)
+
+
+def test_more_periods_than_there_are_is_no_number() -> None:
+    row = row_of(SWING, feature="amplitude", periods=9, value=2.0, bound=1.0)
+    assert row.holds is False
+    assert row.note == "the column shows no amplitude"
+
+
+def test_scatter_of_the_periods_stands_beside_the_frequency() -> None:
+    """Periods of 0.3 and 0.2 s in turn, four of them: standard deviation 0.0577 s, over sqrt(4) and the mean of 0.25 s.
+
+    The longer periods shift the mean, and so the passages, by some samples.
+    """
+    phase = np.interp(TIMES, np.cumsum([0.0, 0.3, 0.2, 0.3, 0.2, 0.3, 0.2]), np.arange(7.0))
+    note = row_of(np.sin(2.0 * np.pi * phase), feature="frequency", value=4.0).note
+    assert note is not None
+    error, what = note.removeprefix("standard error ").split("%, ")
+    assert float(error) == pytest.approx(11.5, rel=0.05)
+    assert what == "from the scatter of 4 periods"
+
+
+def test_strouhal_number_is_that_of_the_probe() -> None:
+    scene = tank_with(figure={"type": "feature", "column": "body.lift[1]", "feature": "strouhal"})
+    (row,) = compare_run(scene, {"time[s]": TIMES, "body.lift[1]": SWING})
+    assert row.value == pytest.approx(4.0 * 0.5 / 2.0, rel=2e-3)
+
+
+def test_strouhal_number_of_another_probe_is_refused() -> None:
+    with pytest.raises(SceneError, match="Strouhal"):
+        row_of(TIMES, feature="strouhal", value=1.0)

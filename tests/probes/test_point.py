@@ -82,3 +82,12 @@ def test_neighbours_across_a_periodic_boundary_count():
     probe = point_probe((0.0, 0.5), domain={"periodic": {"x": [0.0, 1.2]}})
     assert probe.evaluate(frame_of(water))[0] == pytest.approx(0.5, rel=1e-12)
     assert math.isnan(point_probe((-0.06, 0.5)).evaluate(frame_of(water))[0])
+
+
+def test_a_line_is_a_row_of_points():
+    line = {"type": "line", "start": [0.2, 0.5], "end": [0.8, 0.5], "points": 3, "fields": ["velocity"]}
+    probe = probe_of(scene_with(line))
+    position = lattice([0.0, 0.0], [1.0, 1.0])
+    frame = frame_of(fluid(position, velocity=position * [2.0, 3.0]))
+    assert probe.columns[2] == "probe.velocity_x_1[m/s]"
+    assert probe.evaluate(frame) == pytest.approx([0.4, 1.5, 1.0, 1.5, 1.6, 1.5])

@@ -106,6 +106,11 @@ TOGETHER = [
     (["boundaries.tank.side=solid"], "boundaries.tank.open", "a solid has no faces"),
     (["references.energy.high=null"], "references.energy", "neither low nor high"),
     (["fluids={}"], "fluids", "neither fluids nor structures"),
+    (["output.fields=[wall_shear_stress]", "numerics.viscosity={type: artificial}"],
+     "output.fields", "which artificial does not know"),
+    (["output.fields=[wall_shear_stress]", "numerics.viscosity={type: laminar}"],
+     "output.fields", "nothing is sheared"),
+    (["output.fields=[age]"], "output.fields", "no open boundaries"),
 ]  # fmt: skip
 
 

@@ -74,7 +74,7 @@ def test_what_is_unknown_gets_the_nearest_known(old: str, new: str, key: str, ne
         ("sound_speed: auto", "sound_speed: {}", "numerics.sound_speed", "auto or a number greater than 0"),
         ("sound_speed: auto", "h_over_dp: 9", "numerics.h_over_dp", "a number at least 1 and at most 4"),
         ("dimension: 2", "dimension: 4", "dimension", "2, 3"),
-        ("type: force, ", "", "probes.load.type", "front, momentum, point, reach"),
+        ("type: force, ", "", "probes.load.type", "front, line, momentum, point, reach"),
         ("box, min: [0.0, 0.0], max: [4", "bx, min: [0, 0], max: [4", "boundaries.tank.shape.type", "box"),
         ("{type: energy}", "energy", "probes.energy", "a mapping with a type: "),
         ("{type: energy}", "{type: 3}", "probes.energy.type", "energy"),

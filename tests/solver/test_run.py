@@ -29,6 +29,46 @@ def sloshing(end: float = 0.4, **changes) -> Scene:
     return still_tank(gravity=(3.0, -9.0), time={"end": end}, output=output, probes=PROBES, **changes)
 
 
+RECORDED = {
+    "statistics": {"min": (0.1, 0.1), "max": (0.4, 0.3), "start": 0.1},
+    "paths": {"middle": {"seeds": [(0.25, 0.25), (0.1, 0.1)], "every": 0.15}},
+}
+
+
+def recorded(directory: Path) -> dict[str, np.ndarray]:
+    """Every array of the recordings of a run."""
+    found = {}
+    for name in ("statistics.h5", "paths.h5"):
+        with h5py.File(directory / name, "r") as file:
+            file.visititems(
+                lambda key, item: found.update({key: item[()]}) if hasattr(item, "shape") else None
+            )
+    return found
+
+
+def test_recordings_of_a_run_that_goes_on_are_those_of_one_without_a_break(tmp_path):
+    whole, broken = tmp_path / "whole", tmp_path / "broken"
+    scene = sloshing()
+    scene = scene.model_copy(update={"output": type(scene.output)(**scene.output.model_dump() | RECORDED)})
+    run_scene(scene, whole, device="cpu")
+    run_scene(scene, broken, device="cpu", frames=5)
+    run_scene(scene, broken, device="cpu", resume=True)
+    expected = recorded(whole)
+    assert expected["samples"].shape == (7, 5)
+    assert (expected["samples"] == 10).all()
+    for name, values in recorded(broken).items():
+        np.testing.assert_array_equal(values, expected[name])
+    stage = Usd.Stage.Open(str(whole / "paths.usdc"))
+    curves = UsdGeom.BasisCurves(stage.GetPrimAtPath("/still_tank/middle"))
+    counts = np.array(curves.GetCurveVertexCountsAttr().Get())
+    assert list(counts[:2]) == [13, 13]
+    paths = expected["middle/position"]
+    assert len(counts) == paths.shape[1]
+    assert counts.sum() == np.isfinite(paths[..., 0]).sum()
+    points = np.array(curves.GetPointsAttr().Get())
+    assert points[:13, :2] == pytest.approx(paths[:, 0], abs=1e-6)
+
+
 def last_state(directory: Path) -> dict:
     return read_checkpoint(directory / "checkpoint.h5").state["simulation"]
 

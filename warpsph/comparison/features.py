@@ -9,6 +9,7 @@ import numpy as np
 
 from warpsph.comparison.limits import unit_of, window_of
 from warpsph.comparison.row import Comparison, History, relative_errors
+from warpsph.scene.probes import ForceCoefficientsProbe
 from warpsph.scene.references import FeatureReference, Figure, bound_at
 from warpsph.scene.schema import Scene
 
@@ -31,14 +32,15 @@ def compare_feature(name: str, reference: FeatureReference, scene: Scene, histor
         bound=bound_at(reference.bound, scene.spacing),
         uncertainty=reference.uncertainty,
         source=reference.source,
-        note=_why_missing(reference, figure, reached),
+        note=_why_missing(reference, figure, reached) or _scatter(reference, scene, history),
     )
 
 
 def figure_of(figure: Figure, scene: Scene, history: History) -> tuple[float, bool]:
     """The figure of a run, not a number where there is none, and whether the run reached the end of its window."""
     time, column, reached = window_of(figure, scene, history)
-    return (feature_of(figure, time, column) if reached else math.nan), reached
+    value = feature_of(figure, time, column) if reached else math.nan
+    return value * _scale(figure, scene), reached
 
 
 def feature_of(figure: Figure, time: np.ndarray, column: np.ndarray) -> float:
@@ -47,6 +49,12 @@ def feature_of(figure: Figure, time: np.ndarray, column: np.ndarray) -> float:
         return math.nan
     if figure.average is not None:
         column = moving_mean(time, column, figure.average)
+    if figure.feature in OF_PERIODS:
+        return OF_PERIODS[figure.feature](passages(time, column, figure.periods))
+    if figure.periods is not None:
+        time, column = last_periods(time, column, figure.periods)
+    if time.size == 0:
+        return math.nan
     if figure.feature in THRESHOLD_FEATURES:
         return THRESHOLD_FEATURES[figure.feature](time, column, float(figure.threshold or 0.0))
     return FEATURES[figure.feature](time, column)
@@ -55,7 +63,7 @@ def feature_of(figure: Figure, time: np.ndarray, column: np.ndarray) -> float:
 def feature_unit(figure: Figure) -> str:
     """Unit of the figure, from that of the column."""
     unit = unit_of(figure.column)
-    units = {"integral": f"{unit} s", "decay_rate": "1/s"}
+    units = {"integral": f"{unit} s", "decay_rate": "1/s", "frequency": "1/s", "strouhal": "1"}
     times = dict.fromkeys(("arrival", "first_peak_time", "period", "maximum_time", "minimum_time"), "s")
     return (units | times).get(figure.feature, unit)
 
@@ -104,19 +112,42 @@ def maximum_time(time: np.ndarray, column: np.ndarray) -> float:
     return float(time[top] - 0.5 * slope / curvature) if curvature < 0.0 else float(time[top])
 
 
-def period(time: np.ndarray, column: np.ndarray) -> float:
-    """Mean time between upward passages of the mean value."""
+def period(times: np.ndarray) -> float:
+    """Mean time between passages."""
+    return float(np.diff(times).mean()) if len(times) > 1 else math.nan
+
+
+def period_error(times: np.ndarray) -> float:
+    """Standard error of the period, from the scatter of the single ones; not a number for less than three."""
+    singles = np.diff(times)
+    return float(singles.std(ddof=1) / math.sqrt(len(singles))) if len(singles) > 2 else math.nan
+
+
+def last_periods(time: np.ndarray, column: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
+    """The samples of the last whole periods, with those interpolated at both ends; none where there are too few."""
+    times = passages(time, column, count)
+    if not len(times):
+        return time[:0], column[:0]
+    begin, end = times[0], times[-1]
+    within = time[(time > begin) & (time < end)]
+    chosen = np.concatenate([[begin], within, [end]])
+    return chosen, np.interp(chosen, time, column)
+
+
+def passages(time: np.ndarray, column: np.ndarray, periods: int | None = None) -> np.ndarray:
+    """Times of the upward passages of the mean value, by linear interpolation: all, or those around the last so many
+    periods, none where there are too few."""
     deviation = column - column.mean()
     low = -PASSAGE_MARGIN * deviation.std()
-    passages, armed = [], False
+    found, armed = [], False
     for index in range(1, len(time)):
         armed = armed or deviation[index - 1] <= low
         if armed and deviation[index - 1] < 0.0 <= deviation[index]:
-            passages.append(_passage(time, deviation, index, 0.0))
+            found.append(_passage(time, deviation, index, 0.0))
             armed = False
-    if len(passages) < 2:
-        return math.nan
-    return (passages[-1] - passages[0]) / (len(passages) - 1)
+    if periods is not None:
+        found = found[-1 - periods :] if len(found) > periods else []
+    return np.array(found)
 
 
 def decay_rate(time: np.ndarray, column: np.ndarray) -> float:
@@ -130,6 +161,27 @@ def _passage(time: np.ndarray, column: np.ndarray, index: int, level: float) -> 
     """Time of a level between a sample and the one before it."""
     below, above = column[index - 1], column[index]
     return float(time[index - 1] + (level - below) / (above - below) * (time[index] - time[index - 1]))
+
+
+def _scale(figure: Figure, scene: Scene) -> float:
+    """What turns a frequency into a Strouhal number [s], and leaves other figures as they are."""
+    probe = scene.probes[figure.column.partition(".")[0]]
+    if figure.feature == "strouhal" and isinstance(probe, ForceCoefficientsProbe):
+        return probe.length / probe.speed
+    return 1.0
+
+
+def _scatter(reference: FeatureReference, scene: Scene, history: History) -> str | None:
+    """The standard error of a figure that is a mean over periods, where there are enough of them."""
+    if reference.feature not in OF_PERIODS:
+        return None
+    time, column, _ = window_of(reference, scene, history)
+    if reference.average is not None:
+        column = moving_mean(time, column, reference.average)
+    times = passages(time, column, reference.periods)
+    if not math.isfinite(error := period_error(times)):
+        return None
+    return f"standard error {error / period(times):.2%}, from the scatter of {len(times) - 1} periods"
 
 
 def _why_missing(reference: FeatureReference, figure: float, reached: bool) -> str | None:
@@ -148,9 +200,16 @@ FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
     "deviation": lambda _, column: float(column.std()),
     "mean": lambda time, column: float(np.trapezoid(column, time) / (time[-1] - time[0])),
     "integral": lambda time, column: float(np.trapezoid(column, time)),
-    "period": period,
+    "amplitude": lambda _, column: 0.5 * float(column.max() - column.min()),
+    "centre": lambda _, column: 0.5 * float(column.max() + column.min()),
     "decay_rate": decay_rate,
 }
+OF_PERIODS: Mapping[str, Callable[[np.ndarray], float]] = {
+    "period": period,
+    "frequency": lambda times: 1.0 / period(times),
+    "strouhal": lambda times: 1.0 / period(times),
+}
+"""From the times of passages; a Strouhal number still needs its scale."""
 THRESHOLD_FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray, float], float]] = {
     "arrival": arrival,
     "first_peak": lambda time, column, threshold: first_peak(time, column, threshold)[1],

@@ -43,6 +43,21 @@ class RunDirectory:
         return self.path / "frames.h5"
 
     @property
+    def statistics(self) -> Path:
+        """Averages of the flow over time on a grid."""
+        return self.path / "statistics.h5"
+
+    @property
+    def path_table(self) -> Path:
+        """Paths of particles as numbers."""
+        return self.path / "paths.h5"
+
+    @property
+    def path_curves(self) -> Path:
+        """Paths of particles as a USD stage."""
+        return self.path / "paths.usdc"
+
+    @property
     def checkpoint(self) -> Path:
         """The last state that a run can go on from."""
         return self.path / "checkpoint.h5"

@@ -7,7 +7,7 @@ among the fluid, then those among the walls.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -54,7 +54,7 @@ class CellTable:
 
     Args:
         first: index of the range's first particle.
-        capacity: number of particles at the start, never exceeded.
+        capacity: number of places, never exceeded; all are taken unless `count` is lowered.
     """
 
     def __init__(self, launcher: Launcher, first: int, capacity: int, buckets: int) -> None:
@@ -164,10 +164,15 @@ class NeighbourSearch:
             if moves:
                 take.run(table.count)
 
-    def sort(self, table_index: int, arrays: Sequence[Reordered]) -> int:
-        """Sort a table and its arrays by cell; return the number of particles that left the kill box."""
+    def sort(
+        self, table_index: int, arrays: Sequence[Reordered], remove: Callable[[], None] | None = None
+    ) -> int:
+        """Sort a table and its arrays by cell; return how many particles are gone: those that left the kill box, and
+        those whose keys `remove` has set to REMOVED."""
         table = self.tables[table_index]
         self._assign[table_index].run(table.count)
+        if remove:
+            remove()
         if table.count:
             wp.utils.radix_sort_pairs(table.key, table.order, table.count)
         for array in (*arrays, self._listed[table_index]):
@@ -321,6 +326,11 @@ class Reordered:
         self._own = self._scratch if not table.count else _words_of(array[first : first + size], words)
         self._gather = launcher.bind("sort", gather_words, table.order, self._own, self._scratch)
         self._owner = array  # the words above are a view of its memory
+
+    @property
+    def words(self) -> wp.array:
+        """The array as words of 4 bytes, shape (places, words of an entry)."""
+        return self._own
 
     def apply(self, count: int) -> None:
         """Bring the first `count` entries into the new order."""

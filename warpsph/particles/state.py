@@ -18,6 +18,7 @@ UNITS = {
     "acceleration": "m/s^2",
     "id": "1",
     "set_index": "1",
+    "patch": "1",
     "position_pressure": "m, Pa",
     "position_density": "m, kg/m^dim",
     "carried_viscosity": "Pa s",
@@ -35,19 +36,25 @@ UNITS = {
 class Layout:
     """Places for particles of each kind; fluid has the indices 0 .. fluids - 1, walls those behind, then faces.
 
-    The last `images` places of the fluid are for its mirror images at planes of symmetry. `faces` are wall particles
-    that move with structures.
+    The last `images` places of the fluid are for its mirror images at planes of symmetry, and the `spare` places before
+    them for fluid that is to come. `faces` are wall particles that move with structures.
     """
 
     fluids: int
     walls: int
     images: int = 0
     faces: int = 0
+    spare: int = 0
 
     @property
     def first_image(self) -> int:
-        """Index of the first image, which is the number of fluid particles at the start."""
+        """Index of the first image, which is the number of places for fluid particles."""
         return self.fluids - self.images
+
+    @property
+    def fluids_at_start(self) -> int:
+        """Number of fluid particles at the start."""
+        return self.first_image - self.spare
 
     @property
     def solids(self) -> int:

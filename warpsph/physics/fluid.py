@@ -163,6 +163,11 @@ class FluidModel:
         return [*summed, *stress, "accelerate", *corrected, *order, "kick and drift", *gradient, *rate]
 
     @property
+    def order(self) -> ParticleOrderModel | None:
+        """What keeps the particles evenly spread, if anything does."""
+        return self._order
+
+    @property
     def count(self) -> int:
         return self._rows.targets.count
 

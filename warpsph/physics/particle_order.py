@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import warp as wp
 from warpsph_kernels.particle_order import LARGEST_SHIFT, make_order_kernels
 
@@ -28,6 +30,8 @@ class ParticleOrderModel:
         self.next_shift = wp.zeros(fluids, dtype=arithmetic.vector, device=device)
         self.coverage = wp.zeros(fluids if self._finds_surface else 1, dtype=arithmetic.real, device=device)
         self.largest_shift = LARGEST_SHIFT * spacing
+        self.complete_coverage: Callable[[], None] | None = None
+        """What the coverage of particles lacks whose neighbours are not all there."""
         self.bind_lists()
 
     @property
@@ -69,4 +73,6 @@ class ParticleOrderModel:
         count = self._rows.targets.count
         self._find.run(count)
         if self._finds_surface:
+            if self.complete_coverage:
+                self.complete_coverage()
             self._limit.run(count)

@@ -5,8 +5,11 @@ from typing import Any
 
 from warpsph.probes.displacement import DisplacementProbe
 from warpsph.probes.energy import EnergyProbe
+from warpsph.probes.flux import FluxProbe
 from warpsph.probes.force import ForceProbe
+from warpsph.probes.force_coefficients import ForceCoefficientsProbe
 from warpsph.probes.front import FrontProbe
+from warpsph.probes.line import LineProbe
 from warpsph.probes.momentum import MomentumProbe
 from warpsph.probes.point import PointProbe
 from warpsph.probes.probe import Probe
@@ -27,7 +30,9 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "water_level": WaterLevelProbe,
     "wall_pressure": WallPressureProbe,
     "point": PointProbe,
+    "line": LineProbe,
     "force": ForceProbe,
+    "force_coefficients": ForceCoefficientsProbe,
     "energy": EnergyProbe,
     "volume": VolumeProbe,
     "displacement": DisplacementProbe,
@@ -36,6 +41,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "rigid_body": RigidBodyProbe,
     "structure_energy": StructureEnergyProbe,
     "momentum": MomentumProbe,
+    "flux": FluxProbe,
 }
 
 

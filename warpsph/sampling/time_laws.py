@@ -118,11 +118,11 @@ def _oscillation(motion: Sinusoid, time: float) -> np.ndarray:
     omega, phase = 2.0 * np.pi * motion.frequency, np.deg2rad(motion.phase)
     sine, cosine = np.sin(omega * tau + phase), np.cos(omega * tau + phase)
     f, df, ddf = sine - np.sin(phase), omega * cosine, -(omega**2) * sine
-    r, dr, ddr = _ramp(tau, motion.ramp)
+    r, dr, ddr = smooth_ramp(tau, motion.ramp)
     return np.array([r * f, dr * f + r * df, ddr * f + 2.0 * dr * df + r * ddf])
 
 
-def _ramp(tau: float, duration: float) -> tuple[float, float, float]:
+def smooth_ramp(tau: float, duration: float) -> tuple[float, float, float]:
     """10 s^3 - 15 s^4 + 6 s^5 with s = tau / duration, then 1: no step in value, slope or curvature."""
     if tau >= duration:
         return 1.0, 0.0, 0.0

@@ -10,7 +10,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from warpsph.scene.shapes import Bounds
-from warpsph.scene.types import AXES, Axis, Name, PositiveReal, Real, SceneModel, Vector
+from warpsph.scene.types import AXES, Axis, Integer, Name, PositiveReal, Real, SceneModel, Vector
 
 STRUCTURE_ENERGIES = (
     "kinetic",
@@ -134,6 +134,35 @@ class PointProbe(_Probe):
         return tuple(column for field in self.fields for column in columns[field])
 
 
+class LineProbe(_Probe):
+    """Fluid fields at evenly spaced points of a line, numbered from 0: velocity_x_0, velocity_x_1 and so on."""
+
+    type: Literal["line"] = "line"
+    start: Vector
+    """The first point [m]."""
+
+    end: Vector
+    """The last point [m]."""
+
+    points: Annotated[Integer, Field(ge=2, le=1000)] = 2
+    """How many points, the two ends included. Default: 2."""
+
+    fields: Annotated[tuple[PointField, ...], Field(min_length=1)] = ("pressure", "velocity")
+    """What to interpolate: pressure [Pa], velocity [m/s], density [kg/m3]. Default: pressure and velocity."""
+
+    @property
+    def at(self) -> tuple[tuple[float, ...], ...]:
+        """Where the points are [m]."""
+        parts = [k / (self.points - 1) for k in range(self.points)]
+        ends = tuple(zip(self.start, self.end, strict=True))
+        return tuple(tuple((1.0 - part) * a + part * b for a, b in ends) for part in parts)
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        of_point = PointProbe(at=(0.0,) * dimension, fields=self.fields).quantities(dimension)
+        parts = [column.partition("[") for column in of_point]
+        return tuple(f"{name}_{k}[{unit}" for k in range(self.points) for name, _, unit in parts)
+
+
 class ForceProbe(_OnSolid):
     """Force and torque of the fluid on a boundary or a structure."""
 
@@ -143,6 +172,52 @@ class ForceProbe(_OnSolid):
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         return _force_columns(dimension)
+
+
+class ForceCoefficientsProbe(_Probe):
+    """Drag, lift and moment of the fluid on walls and structures together.
+
+    A force has the coefficient c = 2 F / (rho U^2 L), in space over the span as well: 2 F / (rho U^2 L b); a moment has
+    another L below. The moment is about the direction of drag x lift, which is z in the plane.
+    """
+
+    type: Literal["force_coefficients"] = "force_coefficients"
+    boundaries: tuple[Name, ...] = ()
+    """Walls that count. Default: none."""
+
+    structures: tuple[Name, ...] = ()
+    """Structures that count. Default: none."""
+
+    speed: PositiveReal
+    """Reference speed U, such as that of the inflow [m/s]."""
+
+    length: PositiveReal
+    """Reference length L, such as a diameter or a chord [m]."""
+
+    span: PositiveReal | None = None
+    """Reference length b across the plane of the flow [m]; in three dimensions only. Default: null."""
+
+    density: PositiveReal | None = None
+    """Reference density rho [kg/m3]; null: that of the fluid. Default: null."""
+
+    drag: Vector | None = None
+    """Direction of drag, of any length; null: along x. Default: null."""
+
+    lift: Vector | None = None
+    """Direction of lift, across that of drag; null: along y. Default: null."""
+
+    about: Vector | None = None
+    """Point about which the moment is taken [m]; null: the centre of mass at the start. Default: null."""
+
+    def direction(self, force: Literal["drag", "lift"], dimension: int) -> tuple[float, ...]:
+        """Direction of drag or of lift, of any length."""
+        usual = tuple(float(k == ("drag", "lift").index(force)) for k in range(dimension))
+        return tuple(getattr(self, force) or usual)
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "N/m" if dimension == 2 else "N"
+        coefficients = ("drag", "lift", "moment", "viscous_drag", "viscous_lift")
+        return (*(f"{name}[1]" for name in coefficients), f"drag_force[{unit}]", f"lift_force[{unit}]")
 
 
 class EnergyProbe(_Probe):
@@ -276,6 +351,20 @@ class MomentumProbe(_Probe):
         return linear + tuple(f"angular_momentum_{axis}[kg m2/s]" for axis in AXES)
 
 
+class FluxProbe(_Probe):
+    """What passes an open boundary into the domain: mass a second and its integral, from the velocity on the patch at
+    the rest density, and the mass of the particles that have entered less that of those that have left."""
+
+    type: Literal["flux"] = "flux"
+    patch: Name
+    """Name of the open boundary."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        unit = "kg/m" if dimension == 2 else "kg"
+        rate = "kg/(m s)" if dimension == 2 else "kg/s"
+        return (f"flux[{rate}]", f"mass[{unit}]", f"counted_mass[{unit}]")
+
+
 def _force_columns(dimension: int) -> tuple[str, ...]:
     if dimension == 2:
         return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
@@ -288,7 +377,9 @@ Probe = Annotated[
     | WaterLevelProbe
     | WallPressureProbe
     | PointProbe
+    | LineProbe
     | ForceProbe
+    | ForceCoefficientsProbe
     | EnergyProbe
     | VolumeProbe
     | DisplacementProbe
@@ -296,6 +387,7 @@ Probe = Annotated[
     | ReactionProbe
     | RigidBodyProbe
     | StructureEnergyProbe
-    | MomentumProbe,
+    | MomentumProbe
+    | FluxProbe,
     Field(discriminator="type"),
 ]

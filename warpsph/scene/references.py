@@ -13,6 +13,7 @@ from warpsph.scene.types import (
     FileName,
     Name,
     NonNegativeReal,
+    PositiveInteger,
     PositiveReal,
     Real,
     SceneModel,
@@ -33,6 +34,10 @@ Feature = Literal[
     "first_peak",
     "first_peak_time",
     "period",
+    "frequency",
+    "strouhal",
+    "amplitude",
+    "centre",
     "decay_rate",
 ]
 Bound = PositiveReal | Annotated[tuple[tuple[PositiveReal, PositiveReal], ...], Field(min_length=1)]
@@ -213,11 +218,17 @@ class Figure(SceneModel):
     """maximum, minimum, mean or deviation, the standard one [unit of the column]; maximum_time and minimum_time, when
     they are [s], between samples by a parabola; integral over time [unit s]; arrival: first time at which the column
     reaches `threshold` [s]; first_peak: largest value from the arrival until the column has fallen below half of it,
-    and first_peak_time, when that is [s]; period: mean time between upward passages of the mean value [s]; decay_rate:
-    k of the exponential exp(-k t) that fits best [1/s]."""
+    and first_peak_time, when that is [s]; period: mean time between upward passages of the mean value [s], frequency:
+    one over it [1/s], and strouhal: frequency times length over speed, both of the probe of force coefficients that the
+    column belongs to [1]; amplitude: half of the largest less the smallest value, and centre: half of their sum [unit
+    of the column]; decay_rate: k of the exponential exp(-k t) that fits best [1/s]."""
 
     window: tuple[NonNegativeReal, NonNegativeReal] | None = None
     """First and last time [s]; null: the whole run. Default: null."""
+
+    periods: PositiveInteger | None = None
+    """Only the last so many whole periods in the window count, from one upward passage of the mean value to another;
+    null: the whole window. Default: null."""
 
     average: PositiveReal | None = None
     """The column is averaged over this time about each sample first [s]; null: it is taken as it is. Default: null."""

@@ -21,7 +21,9 @@ from warpsph.scene.expressions import Expression, VectorField
 from warpsph.scene.file_shapes import LoadContext
 from warpsph.scene.motion import Motion
 from warpsph.scene.numerics import Numerics
+from warpsph.scene.open_boundaries import OpenBoundary
 from warpsph.scene.probes import Probe
+from warpsph.scene.recordings import FlowStatistics, Paths
 from warpsph.scene.references import Reference
 from warpsph.scene.shapes import Bounds, Shape
 from warpsph.scene.structures import Contact, Coupling, Structure
@@ -47,6 +49,8 @@ OutputField = Literal[
     "mass",
     "vorticity",
     "free_surface",
+    "age",
+    "wall_shear_stress",
     "displacement",
     "cauchy_stress",
     "von_mises",
@@ -186,9 +190,17 @@ class Output(SceneModel):
 
     fields: tuple[OutputField, ...] = ("velocity", "density", "pressure", "displacement", "von_mises")
     """Fields in the frames beside position and id, each where a set has it: velocity [m/s], mass [kg]; of fluids
-    density [kg/m3], pressure [Pa], vorticity [1/s] and free_surface (1 there, else 0); of structures displacement [m],
-    cauchy_stress and von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1].
+    density [kg/m3], pressure [Pa], vorticity [1/s], free_surface (1 there, else 0) and, between open boundaries, age
+    [s], the time since a particle came in or since the start; of structures displacement [m], cauchy_stress and
+    von_mises [Pa], green_lagrange_strain [1], volume_ratio J [1]; of walls and structures, where they are no_slip and
+    the viscosity is laminar, wall_shear_stress [Pa].
     Default: velocity, density, pressure, displacement, von_mises."""
+
+    statistics: FlowStatistics | None = None
+    """Averages over time of velocity and pressure on a grid, in statistics.h5; null: none. Default: null."""
+
+    paths: Annotated[Mapping[Name, Paths], _NAMED] = {}
+    """Paths of chosen particles, by name, in paths.h5 and paths.usdc. Default: none."""
 
     checkpoint_every: PositiveInteger | None = None
     """Frames between checkpoints [1]; null: about every tenth of the run, and at the end. Default: null."""
@@ -239,6 +251,9 @@ class Scene(SceneModel):
 
     boundaries: Annotated[Mapping[Name, Boundary], _NAMED] = {}
     """Walls by name. Default: none."""
+
+    open_boundaries: Annotated[Mapping[Name, OpenBoundary], _NAMED] = {}
+    """Patches through which fluid enters and leaves, by name. Default: none."""
 
     structures: Annotated[Mapping[Name, Structure], _NAMED] = {}
     """Flexible structures by name. Default: none."""

@@ -17,6 +17,7 @@ from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
 from warpsph.physics.assembly import Assembly, WallRange, WallSurface
 from warpsph.physics.boundary import WallModel, make_wall_surface, no_slip_flags
+from warpsph.physics.exchange import EDGE_MARGIN, ExchangeModel
 from warpsph.physics.fluid import (
     FluidModel,
     fluid_constants,
@@ -24,12 +25,14 @@ from warpsph.physics.fluid import (
     select_code,
 )
 from warpsph.physics.mirrored_walls import MirroredWalls
+from warpsph.physics.open_boundary import OpenBoundaryModel, spare_places
 from warpsph.physics.sound_speed import choose_sound_speed
 from warpsph.physics.symmetry import SymmetryModel, images_of
 from warpsph.physics.wall_motion import PrescribedMotion
 from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
 from warpsph.sampling.mirror import mirror_ways
+from warpsph.sampling.patch_laws import expected_inflow
 from warpsph.sampling.walls import period_of
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
@@ -64,6 +67,14 @@ class WallParts:
 
 
 @dataclass(frozen=True)
+class OpenParts:
+    """Open boundaries: what they impose within a step, and their exchange of particles between steps."""
+
+    model: OpenBoundaryModel
+    exchange: ExchangeModel
+
+
+@dataclass(frozen=True)
 class Parts:
     """A run, assembled. `followers` are the arrays that each table takes along when it is sorted."""
 
@@ -74,6 +85,7 @@ class Parts:
     walls: WallParts | None
     faces: FaceParts | None
     symmetry: SymmetryModel | None
+    open_boundaries: OpenParts | None
     followers: Mapping[int, tuple[Reordered, ...]]
 
     @property
@@ -103,14 +115,19 @@ def search_space(scene: Scene, sets: Sequence[SampledSet]) -> SearchSpace:
 
 
 def assemble(
-    scene: Scene, sets: Sequence[SampledSet], launcher: Launcher, structures: StructureParts | None = None
+    scene: Scene,
+    sets: Sequence[SampledSet],
+    launcher: Launcher,
+    structures: StructureParts | None = None,
+    places: int | None = None,
 ) -> Parts:
     """Allocate everything that fluids and walls need and bind their passes; structures show the fluid their faces.
 
+    `places` for fluid particles are as many as the start needs, with a margin where fluid may enter, if not given.
     Raises SceneError if structures are too thin for the fluid.
     """
     sampled = sample_faces(scene, structures) if structures else None
-    assembly = _shared(scene, sets, sampled, launcher)
+    assembly = _shared(scene, sets, sampled, launcher, places)
     layout, arithmetic = assembly.layout, assembly.options.arithmetic
     _fill_state(scene, sets, sampled, assembly)
     sides = wp.zeros(max(layout.faces, 1), dtype=arithmetic.vector, device=launcher.device)
@@ -126,18 +143,39 @@ def assemble(
         shared = (scene, sets, assembly, search, place)
         faces = make_faces(*shared, structures, sampled, sides, fluid.react)
     symmetry = SymmetryModel(scene, assembly, search, search.tables[-1]) if layout.images else None
-    followers = _followers(assembly, search, tables, fluid, walls, faces)
-    return Parts(assembly, search, tables, fluid, walls, faces, symmetry, followers)
+    model = OpenBoundaryModel(scene, assembly, search, fluid) if scene.open_boundaries else None
+    followers = _followers(assembly, search, tables, fluid, walls, faces, model)
+    opened = _open_parts(scene, sets, assembly, search, model, followers[FLUID]) if model else None
+    search.tables[FLUID].count = layout.fluids_at_start
+    return Parts(assembly, search, tables, fluid, walls, faces, symmetry, opened, followers)
+
+
+def _open_parts(
+    scene: Scene,
+    sets: Sequence[SampledSet],
+    assembly: Assembly,
+    search: NeighbourSearch,
+    model: OpenBoundaryModel,
+    followers: Sequence[Reordered],
+) -> OpenParts:
+    fluids = np.concatenate([s.position for s in sets if s.kind == "fluid"])
+    model.tag_start(fluids, EDGE_MARGIN * scene.spacing)
+    return OpenParts(model, ExchangeModel(assembly, search, model, followers, scene.spacing))
 
 
 def _shared(
-    scene: Scene, sets: Sequence[SampledSet], faces: SampledFaces | None, launcher: Launcher
+    scene: Scene,
+    sets: Sequence[SampledSet],
+    faces: SampledFaces | None,
+    launcher: Launcher,
+    places: int | None,
 ) -> Assembly:
     """What all models share."""
     arithmetic = Arithmetic(scene.dimension, scene.numerics.precision)
-    layout = _layout(scene, sets, len(faces.owner) if faces else 0)
+    layout = _layout(scene, sets, len(faces.owner) if faces else 0, places)
     space = search_space(scene, sets)
-    sound_speed = choose_sound_speed(scene, sets, largest_speed(scene, sets))
+    driven = largest_speed(scene, sets) + (expected_inflow(scene) if scene.open_boundaries else 0.0)
+    sound_speed = choose_sound_speed(scene, sets, driven)
     options = select_code(scene, arithmetic, space, has_walls=layout.solids > 0)
     return Assembly(
         launcher=launcher,
@@ -152,11 +190,12 @@ def _shared(
     )
 
 
-def _layout(scene: Scene, sets: Sequence[SampledSet], faces: int) -> Layout:
+def _layout(scene: Scene, sets: Sequence[SampledSet], faces: int, places: int | None) -> Layout:
     fluids = sum(len(s.position) for s in sets if s.kind == "fluid")
     walls = sum(len(s.position) for s in sets if s.kind == "boundary")
-    images = images_of(scene, fluids)
-    return Layout(fluids=fluids + images, walls=walls, images=images, faces=faces)
+    spare = spare_places(scene, fluids) if places is None else places - fluids
+    images = images_of(scene, fluids + spare)
+    return Layout(fluids=fluids + spare + images, walls=walls, images=images, faces=faces, spare=spare)
 
 
 def _make_walls(
@@ -252,9 +291,9 @@ def _fill_state(
     layout = assembly.layout
     for name, values in fields.items():
         array = getattr(state, name)
-        write_array(array, values[: layout.first_image])
+        write_array(array, values[: layout.fluids_at_start])
         if layout.walls:
-            write_array(array[layout.fluids :], values[layout.first_image :])
+            write_array(array[layout.fluids :], values[layout.fluids_at_start :])
     if faces:
         write_array(state.set_index[layout.first_face :], faces.set_index)
         write_array(state.id[layout.first_face :], len(position) + faces.owner)
@@ -267,13 +306,15 @@ def _followers(
     fluid: FluidModel,
     walls: WallParts | None,
     faces: FaceParts | None,
+    opened: OpenBoundaryModel | None,
 ) -> dict[int, tuple[Reordered, ...]]:
     def follow(array: wp.array, table: int, first: int) -> Reordered:
         return Reordered(assembly.launcher, array, search.tables[table], first)
 
     state = [array for _, array in arrays_of(assembly.state)]
     records = [array for _, array in arrays_of(assembly.scratch)]
-    followers = {FLUID: [follow(array, FLUID, 0) for array in (*state, *fluid.own_arrays.values())]}
+    of_fluid = {**fluid.own_arrays, **(opened.own_arrays if opened else {})}
+    followers = {FLUID: [follow(array, FLUID, 0) for array in (*state, *of_fluid.values())]}
     if walls and tables.wall is not None:
         own = (*walls.model.own_arrays.values(), *walls.motion.own_arrays.values())
         shared = [follow(array, tables.wall, assembly.layout.fluids) for array in (*state, *records)]

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warpsph.frame import SetFrame
+from warpsph.frame import Inflow, SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import host_view
 from warpsph.physics.material import material, smoothing_length
@@ -21,8 +21,9 @@ from warpsph.solver.rigid_assembly import density_of
 from warpsph.solver.structure_system import StructureSystem
 from warpsph.solver.system import StepReport
 
-ON_FACES = ("force", "pressure")
+ON_FACES = ("force", "pressure", "viscous_force", "wall_shear_stress")
 """Fields that structures have only in a fluid."""
+USUAL_ON_FACES = ("force", "pressure")
 STRUCTURE = "structure_"
 """Before the names of arrays, extremes and saved values of structures."""
 
@@ -34,13 +35,24 @@ class CoupledSystem:
         self._scene = scene
         self.structure = StructureSystem(scene, sampled, launcher)
         self.fluid = FluidSystem(scene, sampled, launcher, self.structure.parts)
+        self._bodies = [s for s in sampled if s.kind == "structure"]
+        self._couple()
+
+    def _couple(self) -> None:
+        """Make the step that fluid and structures share; needed again when the fluid has been assembled anew."""
         faces = self.fluid.parts.faces
         assert faces is not None
-        self._faces = faces
-        self._bodies = [s for s in sampled if s.kind == "structure"]
+        self._faces, self._face_fields = faces, self.fluid.wall_fields(faces.model.walls)
         self.stepper = CoupledStepper(
-            scene, self.fluid.stepper, self.structure.stepper, faces, self._inertial_step()
+            self._scene, self.fluid.stepper, self.structure.stepper, faces, self._inertial_step()
         )
+
+    def _grow(self) -> None:
+        """Give the fluid more places."""
+        before = self.stepper
+        self.fluid.grow()
+        self._couple()
+        self.stepper.target, self.stepper.lead, self.stepper.size = before.target, before.lead, before.size
 
     def _inertial_step(self) -> float:
         """The longest step of the fluid [s] beside the lightest structure."""
@@ -88,6 +100,8 @@ class CoupledSystem:
         return {**self.fluid.arrays, **_prefixed(self.structure.arrays)}
 
     def step(self, step_count: int) -> StepReport:
+        if self.fluid.is_short_of_places:
+            self._grow()
         report = self.stepper.step()
         self.fluid.check(step_count, report)
         if self.structure.stepper.failed:
@@ -99,22 +113,28 @@ class CoupledSystem:
 
     def frame_sets(self, fields: Sequence[str] | None, ordered: bool) -> tuple[SetFrame, ...]:
         """Fields of fluids and walls as without structures; structures have also the force of the fluid on each
-        particle and the pressure that its first face shows."""
+        particle, its viscous part, and the pressure and the shear stress that the particle's first face shows."""
         unknown = sorted(set(fields or ()) - self.fields)
         if unknown:
             raise KeyError(f"no field {unknown[0]!r}; there are {', '.join(sorted(self.fields))}")
         flowing = self.fluid.frame_sets(_among(fields, self.fluid.fields), ordered)
         solid = self.structure.frame_sets(_among(fields, self.structure.fields), ordered)
-        of_fluid = {name: self._of_fluid(name) for name in ON_FACES if fields is None or name in fields}
+        asked = USUAL_ON_FACES if fields is None else fields
+        of_fluid = {name: self._of_fluid(name) for name in ON_FACES if name in asked}
         return (*flowing, *(self._with(of_fluid, body) for body in solid))
 
     def _of_fluid(self, field: str) -> np.ndarray:
-        """What the fluid does to each structure particle: its force [N], or the pressure of its first face [Pa]."""
-        if field == "force":
-            return self._faces.faces.sums(host_view(self._faces.model.react()))
-        assembly = self.fluid.parts.assembly
+        """What the fluid does to each structure particle: forces [N], and the stresses on its first face [Pa]."""
+        faces, assembly = self._faces.faces, self.fluid.parts.assembly
+        match field:
+            case "force":
+                return faces.sums(host_view(self._faces.model.react()))
+            case "viscous_force":
+                return faces.sums(self._face_fields.viscous_force())
+            case "wall_shear_stress":
+                return faces.first_faces(self._face_fields.shear_stress())
         pressure = host_view(assembly.scratch.position_pressure)[assembly.layout.first_face :, -1]
-        return self._faces.faces.first_faces(pressure)
+        return faces.first_faces(pressure)
 
     def _with(self, columns: Mapping[str, np.ndarray], body: SetFrame) -> SetFrame:
         """The particles of a structure with further columns over all structures."""
@@ -131,6 +151,10 @@ class CoupledSystem:
 
     def warnings(self, largest: Mapping[str, float]) -> list[str]:
         return [*self.fluid.warnings(largest), *self.structure.warnings(_own(largest))]
+
+    def inflows(self) -> dict[str, Inflow]:
+        """What has passed the open boundaries, by name."""
+        return self.fluid.inflows()
 
     def describe(self) -> dict[str, Any]:
         fluid, structure = self.fluid.describe(), self.structure.describe()
@@ -159,6 +183,9 @@ class CoupledSystem:
     def load(self, saved: Mapping[str, Any]) -> None:
         self.structure.load(_own(saved))
         self.fluid.load(saved)
+        target = self.stepper.target
+        self._couple()
+        self.stepper.target = target
         self.stepper.lead, self.stepper.size = float(saved["lead"]), float(saved["size"])
 
 

@@ -19,7 +19,7 @@ def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -
     """Return a plain description for people and programs; sizes in bytes, times in seconds."""
     fields = _fields(parts)
     limits = _step_limits(scene, float(parts.assembly.constants.sound_speed))
-    particles = parts.assembly.layout.total
+    particles = sum(count for _, _, count in sets)
     steps = math.ceil(scene.time.end / min(limits.values()))
     total = sum(field["bytes"] for field in fields) + parts.search.bytes
     return {
@@ -34,12 +34,14 @@ def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -
         "step_limits_s": limits,
         "estimated_steps": steps,
         "estimated_wall_s": steps * particles / TYPICAL_RATE,
+        "fluid_places": parts.assembly.layout.first_image,
     }
 
 
 def _fields(parts: Parts) -> list[dict[str, Any]]:
     shared = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
-    groups = (*shared, *parts.fluid.arrays.items())
+    of_patches = parts.open_boundaries.model.own_arrays if parts.open_boundaries else {}
+    groups = (*shared, *parts.fluid.arrays.items(), *of_patches.items())
     return [{"name": name, "unit": UNITS[name], "bytes": int(array.capacity)} for name, array in groups]
 
 
@@ -49,6 +51,8 @@ def _passes(parts: Parts) -> list[str]:
     if parts.symmetry:
         passes.insert(passes.index("accelerate"), "mirror")
         passes.insert(passes.index("kick and drift") + 1, "mirror")
+    if parts.open_boundaries:
+        passes[passes.index("accelerate") : passes.index("accelerate")] = parts.open_boundaries.model.passes
     if walls is None:
         return passes
     names = {"dynamic": "wall pressure", "modified_dynamic": "mirror points of walls"}

@@ -21,6 +21,7 @@ from warpsph.probes import make_probe
 from warpsph.scene.schema import Scene
 from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.interruption import Interruption
+from warpsph.solver.recordings import Recordings
 from warpsph.solver.resume import require_same_run, require_time_left
 from warpsph.solver.schedule import Stop, schedule
 from warpsph.solver.simulation import Simulation
@@ -85,8 +86,10 @@ class _Run:
         scene = sim.scene
         self._sim, self._scene, self._directory, self._reporter = sim, scene, directory, reporter
         self._probes = [make_probe(name, spec, scene) for name, spec in scene.probes.items()]
+        self._recordings = Recordings(scene, directory)
         self._probe_fields = sorted(
             {field for p in self._probes for names in p.needs.values() for field in names}
+            | self._recordings.fields
         )
         for probe in self._probes:
             probe.start(self._probe_frame())
@@ -102,6 +105,7 @@ class _Run:
         self._sim.load_state(state["simulation"])
         self._statistics.load(json.loads(state["statistics"]), self._sim)
         self._samples = [FieldSample(**sample) for sample in json.loads(state["samples"])]
+        self._recordings.load(state["recordings"])
         self._wall_before = float(state["wall_seconds"])
         self._resumed_at = self._sim.time
 
@@ -157,7 +161,7 @@ class _Run:
         return True
 
     def _write(self, stop: Stop) -> None:
-        if stop.probes and self._probes:
+        if stop.probes and self._probe_fields:
             self._write_probes()
         if stop.frame is None:
             return
@@ -165,12 +169,15 @@ class _Run:
         self._samples.extend(field_samples(self._scene, frame))
         for store in self._stores:
             store.write(frame)
+        self._recordings.write()
         if stop.checkpoint:
             self._write_checkpoint()
 
     def _write_probes(self) -> None:
         frame = self._probe_frame()
-        self._csv.write(frame.time, [value for probe in self._probes for value in probe.evaluate(frame)])
+        if self._probes:
+            self._csv.write(frame.time, [value for probe in self._probes for value in probe.evaluate(frame)])
+        self._recordings.note(frame)
 
     def _probe_frame(self) -> Frame:
         return self._sim.frame(self._probe_fields, ordered=False)
@@ -184,6 +191,7 @@ class _Run:
             "simulation": self._sim.save_state(),
             "statistics": json.dumps(self._statistics.save(self._sim)),
             "samples": json.dumps([asdict(sample) for sample in self._samples]),
+            "recordings": self._recordings.save(),
             "wall_seconds": self._wall_seconds(),
         }
         write_checkpoint(self._directory.checkpoint, state, self._scene.to_yaml())

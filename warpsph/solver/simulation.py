@@ -164,7 +164,8 @@ class Simulation:
                 self._show_frame()
 
     def array(self, name: str) -> wp.array:
-        """Return a state array on the device: a view, whose entries a step reorders but whose memory stays.
+        """Return a state array on the device: a view, whose entries a step reorders but whose memory stays;
+        where fluid enters through open boundaries, until it needs more places (see `growths` of `describe`).
 
         `position`, `velocity_volume`, `density_deviation`, `acceleration`, `id` or `set_index`. Convert with
         `.numpy()` or through DLPack (`torch.from_dlpack`, `jax.dlpack.from_dlpack`): no copy on the same device.
@@ -192,6 +193,7 @@ class Simulation:
             dimension=self.scene.dimension,
             spacing=self.scene.spacing,
             sets=self.system.frame_sets(fields, ordered),
+            inflows=self.system.inflows(),
         )
 
     def ledger(self) -> Ledger:

@@ -30,7 +30,7 @@ class Stepper:
     def __init__(self, scene: Scene, parts: Parts) -> None:
         self._fluid, self._walls, self._faces = parts.fluid, parts.walls, parts.faces
         self._solids, self._search = parts.solids, parts.search
-        self._symmetry = parts.symmetry
+        self._symmetry, self._open = parts.symmetry, parts.open_boundaries
         self._parts = parts
         self._clock = parts.assembly.clock
         self._spacing = scene.spacing
@@ -44,6 +44,7 @@ class Stepper:
         self.take_positions(all_tables=True)
         self.make_lists(all_tables=True)
         self._fluid.synchronise()
+        self.impose_open_boundaries(0.0)
         self.mirror_pressure()
         if self._walls:
             self.find_wall_surface(self._walls)
@@ -51,9 +52,7 @@ class Stepper:
         for solid in self._solids:
             solid.start()
         self.synchronise()
-        self._fluid.update_density()
-        self.update_wall_density()
-        self.survey()
+        self.find_densities()
 
     def place_solids(self, time: float) -> None:
         """Place walls for a time [s], and faces where their structures are."""
@@ -63,9 +62,9 @@ class Stepper:
             self._faces.faces.place(NOW)
 
     def find_wall_surface(self, walls: WallParts) -> None:
-        """Find the normals that keep fluid out of the walls, where the wall method needs them."""
-        table = self._parts.tables.wall
-        if self._parts.assembly.options.has_barrier and table is not None:
+        """Find the normals that keep fluid out of the walls, and along which it shears them."""
+        table, options = self._parts.tables.wall, self._parts.assembly.options
+        if (options.has_barrier or options.wall_friction) and table is not None:
             rows = self._search.list_once(table, table)
             walls.motion.find_surface(rows, self._search.listed_position, self._spacing)
 
@@ -93,9 +92,12 @@ class Stepper:
     def find_forces(self) -> None:
         """Drift over half a step, and sum the forces there."""
         self._fluid.begin_step()
+        self.impose_open_boundaries(self._read(clock_kernels.STEP))
         self.mirror_pressure()
         self.impose_walls()
         self._fluid.accelerate()
+        if self._open:
+            self._open.model.hold_motion()
 
     def advance(self) -> None:
         """Kick over the whole step, and drift over its second half."""
@@ -105,6 +107,9 @@ class Stepper:
     def find_densities(self) -> None:
         """Find density rates at the end of the step, densities with them, and the extremes of the state."""
         self._fluid.update_density()
+        if self._open:
+            self._open.model.hold_density()
+            self._open.model.grow_older()
         self.update_wall_density()
         self.survey()
 
@@ -132,6 +137,11 @@ class Stepper:
         """Show the fluid its images with their densities."""
         if self._symmetry:
             self._symmetry.mirror_density()
+
+    def impose_open_boundaries(self, dt: float) -> None:
+        """Give fluid behind open boundaries its velocity at the end of a step [s] and its pressure in the middle."""
+        if self._open:
+            self._open.model.impose(self.time, self.time - 0.5 * dt)
 
     def move_walls(self, time: float) -> None:
         """Place walls that move as prescribed for a time [s]."""
@@ -164,7 +174,9 @@ class Stepper:
         if self._symmetry:
             self._symmetry.reflect()
         self.take_positions()
-        self.make_lists()
+        if self._open:
+            self._open.exchange.run()
+        self.make_lists(exchanged=self._open is not None)
 
     def take_positions(self, all_tables: bool = False) -> None:
         """Note the positions, and the sides of structures, from which the next lists are made."""
@@ -172,13 +184,16 @@ class Stepper:
         if self._faces:
             self._faces.faces.turn_sides()
 
-    def make_lists(self, all_tables: bool = False) -> None:
-        """Sort and list from the positions last taken."""
+    def make_lists(self, all_tables: bool = False, exchanged: bool = False) -> None:
+        """Sort and list from the positions last taken; fluid may have been `exchanged` at open boundaries."""
         moving = self._moving_tables(all_tables)
         capacities = [rows.capacity for rows in self._search.rows]
         before = self._fluid.count
-        self.removed += self._search.sort(FLUID, self._parts.followers[FLUID])
-        if self._fluid.count < before:
+        remove = self._open.exchange.mark_removed if self._open and exchanged else None
+        self.removed += self._search.sort(FLUID, self._parts.followers[FLUID], remove)
+        if self._open:
+            self._open.model.list_tagged()
+        if exchanged or self._fluid.count < before:
             self.forget_removed()
         for table in (self._parts.tables.wall, self._parts.tables.face):
             if table is not None and moving[table]:
@@ -206,6 +221,11 @@ class Stepper:
         self.mirror_density()
         for solid in self._solids:
             solid.synchronise()
+
+    @property
+    def target(self) -> float:
+        """Time on which a coming step lands [s]."""
+        return self._read(clock_kernels.TARGET)
 
     @property
     def time(self) -> float:
@@ -271,7 +291,7 @@ class Stepper:
             )
 
         self._bind_survey = bind_survey
-        self._survey_fluid = bind_survey(0, a.layout.first_image, 0)
+        self._survey_fluid = bind_survey(0, self._fluid.count, 0)
         self._survey_walls = bind_survey(a.layout.fluids, a.layout.walls, self._fluid_blocks)
         first_row = self._fluid_blocks + self._wall_blocks
         self._survey_faces = bind_survey(a.layout.first_face, a.layout.faces, first_row)

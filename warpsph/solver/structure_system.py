@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import warp as wp
 
-from warpsph.frame import SetFrame
+from warpsph.frame import Inflow, SetFrame
 from warpsph.particles.launch import Launcher
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.contact import UNITS as CONTACT_UNITS
@@ -139,6 +139,10 @@ class StructureSystem:
                 f"{lost} particles have too few neighbours to span a {what}: they carry no stress"
             )
         return warnings
+
+    def inflows(self) -> dict[str, Inflow]:
+        """Nothing flows."""
+        return {}
 
     def describe(self) -> dict[str, Any]:
         model = self.parts.model

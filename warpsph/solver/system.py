@@ -9,7 +9,7 @@ from typing import Any, Protocol
 import numpy as np
 import warp as wp
 
-from warpsph.frame import SetFrame
+from warpsph.frame import Inflow, SetFrame
 from warpsph.solver.ledger import Ledger
 
 
@@ -82,6 +82,9 @@ class System(Protocol):
 
     def warnings(self, largest: Mapping[str, float]) -> list[str]:
         """What a reader of the results should know, from the largest extremes of the whole run."""
+
+    def inflows(self) -> Mapping[str, Inflow]:
+        """What has passed the open boundaries, by name."""
 
     def describe(self) -> dict[str, Any]:
         """What runs: passes, pairs, fields, memory and step limits."""

@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 from warpsph.scene.checks.accuracy import accuracy_problems
 from warpsph.scene.checks.common import DeclaredNames
+from warpsph.scene.checks.force_coefficients import coefficient_problems
 from warpsph.scene.checks.geometry import geometry_problems
+from warpsph.scene.checks.open_boundaries import open_boundary_problems
 from warpsph.scene.checks.references import probe_problems, reference_problems
 from warpsph.scene.checks.sets import boundary_problems, fluid_problems
 from warpsph.scene.checks.settings import domain_problems, settings_problems, symmetry_problems
@@ -34,6 +36,7 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
         "structures": scene.structures,
         "probes": scene.probes,
         "references": scene.references,
+        "open_boundaries": scene.open_boundaries,
     }
     names = declared or DeclaredNames.of(sections)
     of_places = [
@@ -43,12 +46,14 @@ def scene_problems(scene: Scene, declared: DeclaredNames | None = None) -> Itera
         *fluid_problems(scene),
         *boundary_problems(scene, names),
         *structure_problems(scene, names),
+        *open_boundary_problems(scene, names),
     ]
     yield from of_places
     if not of_places:
         yield from geometry_problems(scene)
     yield from settings_problems(scene)
     yield from probe_problems(scene, names)
+    yield from coefficient_problems(scene, names)
     yield from reference_problems(scene, names)
     yield from accuracy_problems(scene, names)
 

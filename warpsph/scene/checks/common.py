@@ -11,6 +11,8 @@ from warpsph.scene.errors import Problem
 from warpsph.scene.expressions import VectorField, free_variables
 from warpsph.scene.types import AXES
 
+_SECTIONS = ("fluids", "boundaries", "structures", "probes", "references", "open_boundaries")
+
 
 @dataclass(frozen=True)
 class DeclaredNames:
@@ -21,6 +23,7 @@ class DeclaredNames:
     structures: frozenset[str]
     probes: frozenset[str]
     references: frozenset[str]
+    open_boundaries: frozenset[str]
 
     @classmethod
     def of(cls, sections: Mapping[str, Any]) -> DeclaredNames:
@@ -30,7 +33,7 @@ class DeclaredNames:
             value = sections.get(section)
             return frozenset(value) if isinstance(value, Mapping) else frozenset()
 
-        return cls(*map(names, ("fluids", "boundaries", "structures", "probes", "references")))
+        return cls(*map(names, _SECTIONS))
 
 
 def unknown_name(key: str, kind: str, name: str, known: Iterable[str]) -> Problem:
@@ -61,7 +64,9 @@ def expression_problems(key: str, expression: str, variables: Sequence[str]) -> 
         yield Problem.at(key, message, f"an expression in {', '.join(variables)}", expression)
 
 
-def vector_field_problems(key: str, field: VectorField | None, dimension: int) -> Iterator[Problem]:
+def vector_field_problems(
+    key: str, field: VectorField | None, dimension: int, variables: Sequence[str] | None = None
+) -> Iterator[Problem]:
     """Problems of a vector of numbers or expressions: its length, and variables without meaning."""
     if field is None:
         return
@@ -70,7 +75,7 @@ def vector_field_problems(key: str, field: VectorField | None, dimension: int) -
         yield Problem.at(key, message, f"{dimension} components", list(field))
     for index, component in enumerate(field):
         if isinstance(component, str):
-            yield from expression_problems(f"{key}.{index}", component, AXES[:dimension])
+            yield from expression_problems(f"{key}.{index}", component, variables or AXES[:dimension])
 
 
 def repeated_problems(key: str, values: Sequence[str]) -> Iterator[Problem]:

@@ -16,8 +16,11 @@ from warpsph.scene.errors import Problem
 from warpsph.scene.probes import (
     DisplacementProbe,
     EnergyProbe,
+    FluxProbe,
+    ForceCoefficientsProbe,
     ForceProbe,
     FrontProbe,
+    LineProbe,
     MomentumProbe,
     PointProbe,
     Probe,
@@ -62,7 +65,9 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
-        if isinstance(probe, PointProbe):
+        if isinstance(probe, FluxProbe) and probe.patch not in names.open_boundaries:
+            yield unknown_name(f"{key}.patch", "open boundary", probe.patch, names.open_boundaries)
+        if isinstance(probe, PointProbe | LineProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
 
 
@@ -99,7 +104,15 @@ def _rotation_problems(probe: RotationProbe, scene: Scene, key: str) -> Iterator
 def _kind_problems(probe: Probe, names: DeclaredNames, key: str) -> Iterator[Problem]:
     """Probes that look at everything of a kind of which the scene has nothing."""
     match probe:
-        case FrontProbe() | ReachProbe() | WaterLevelProbe() | PointProbe() | EnergyProbe() | VolumeProbe():
+        case (
+            FrontProbe()
+            | ReachProbe()
+            | WaterLevelProbe()
+            | PointProbe()
+            | LineProbe()
+            | EnergyProbe()
+            | VolumeProbe()
+        ):
             kind, there = "fluid", names.fluids
         case StructureEnergyProbe():
             kind, there = "structure", names.structures
@@ -223,9 +236,18 @@ def figure_problems(figure: Figure, scene: Scene, names: DeclaredNames, key: str
     needs_threshold = figure.feature in ("arrival", "first_peak", "first_peak_time")
     if needs_threshold and figure.threshold is None:
         yield Problem.at(f"{key}.threshold", f"{figure.feature} needs it", "a number, in the column's unit")
+    if figure.feature == "strouhal":
+        yield from _strouhal_problems(figure, scene, key)
     if not needs_threshold and figure.threshold is not None:
         message = f"{figure.feature} has no threshold"
         yield Problem.at(f"{key}.threshold", message, "null", figure.threshold)
+
+
+def _strouhal_problems(figure: Figure, scene: Scene, key: str) -> Iterator[Problem]:
+    probe = scene.probes.get(figure.column.partition(".")[0])
+    if probe is not None and not isinstance(probe, ForceCoefficientsProbe):
+        message = "a Strouhal number needs the length and the speed of a probe of force coefficients"
+        yield Problem.at(f"{key}.column", message, "a column of such a probe", figure.column)
 
 
 def _feature_problems(reference: FeatureReference, key: str) -> Iterator[Problem]:

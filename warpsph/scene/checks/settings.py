@@ -28,6 +28,43 @@ def settings_problems(scene: Scene) -> Iterator[Problem]:
     yield from _time_problems(scene)
     yield from _numerics_problems(scene)
     yield from repeated_problems("output.fields", scene.output.fields)
+    yield from _shear_problems(scene)
+    yield from _recording_problems(scene)
+    if "age" in scene.output.fields and not scene.open_boundaries:
+        message = "all fluid has the age of the run: the scene has no open boundaries"
+        yield Problem.at("output.fields", message, "fields without age")
+
+
+def _recording_problems(scene: Scene) -> Iterator[Problem]:
+    """Recordings of a flow that is not there, or that begin after the end."""
+    statistics, paths = scene.output.statistics, scene.output.paths
+    starts = {f"output.paths.{name}.at": path.at for name, path in paths.items()}
+    if statistics:
+        starts["output.statistics.start"] = statistics.start
+        if any(low > high for low, high in zip(statistics.min, statistics.max, strict=False)):
+            message = f"a corner of the grid is not below {list(statistics.max)}"
+            yield Problem.at("output.statistics.min", message, "at most max", list(statistics.min))
+    for key, start in starts.items():
+        if start > scene.time.end:
+            yield Problem.at(key, f"the run ends at {scene.time.end:g} s", "a time of the run [s]", start)
+    if starts and not scene.fluids:
+        message = "it records fluids, of which the scene has none"
+        yield Problem.at(next(iter(starts)).rpartition(".")[0], message, "a scene with a fluid")
+
+
+def _shear_problems(scene: Scene) -> Iterator[Problem]:
+    """A wall shear stress where no wall has one."""
+    if "wall_shear_stress" not in scene.output.fields:
+        return
+    key, viscosity = "output.fields", scene.numerics.viscosity.type
+    if viscosity not in _NEED_VISCOSITY:
+        message = f"wall_shear_stress needs the viscosity of the fluid, which {viscosity} does not know"
+        yield Problem.at(key, message, "numerics.viscosity.type: " + " or ".join(_NEED_VISCOSITY))
+        return
+    slips = [wall.slip for wall in scene.boundaries.values()] + [s.slip for s in scene.structures.values()]
+    if "no_slip" not in slips:
+        message = "nothing is sheared: no wall and no structure has slip: no_slip"
+        yield Problem.at(key, message, "fields without wall_shear_stress")
 
 
 def _time_problems(scene: Scene) -> Iterator[Problem]:

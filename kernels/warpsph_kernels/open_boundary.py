@@ -1,0 +1,356 @@
+"""Open boundaries: values at stations on their patches, and what the particles behind them are given.
+
+A patch has the normal n into the domain; d = (x - center) . n is the depth inside, negative in the buffer. Particles in
+a buffer carry the index of its patch as `tag`, others -1.
+"""
+
+from functools import cache
+from typing import Any, NamedTuple
+
+import warp as wp
+
+from warpsph_kernels.arithmetic import make_packing, make_separation
+from warpsph_kernels.cells import make_cell_functions, make_grid_struct
+from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.smoothing import SMOOTHING_KERNELS
+from warpsph_kernels.state import STATES
+
+VELOCITY, PRESSURE, ZERO_GRADIENT, NON_REFLECTING = range(4)
+"""Kinds of open boundaries."""
+SMALLEST_DETERMINANT = 1.0e-3
+"""Of the matrix of moments, of order one inside the fluid; below it the mean by the kernel's weights has to do."""
+NEWTON_STEPS = 4
+"""From a pressure to its density: the first guess is off by a few per cent, and each step squares the error."""
+
+
+class OpenBoundaryKernels(NamedTuple):
+    """Kernels of open boundaries, in the order of a step."""
+
+    find_inside: Any
+    average: Any
+    decide: Any
+    tally_flux: Any
+    impose: Any
+    hold_motion: Any
+    hold_density: Any
+    cover: Any
+
+
+@cache
+def make_patch_struct(options: FluidOptions) -> Any:
+    """Return the struct of a patch.
+
+    In run coordinates [m]: center, normal and two directions across it (the second zero in 2D), half lengths across (of
+    a disc the radius), length of the buffer, `back` from the interface to the far end; numbers and cell edges of its
+    stations, and the first of them; reference pressure [Pa], relaxation [1], averaging time [s].
+    """
+    arithmetic = options.arithmetic
+    real, vector = arithmetic.real, arithmetic.vector
+    pair = wp.types.vector(2, real)
+    counts = wp.types.vector(2, wp.int32)
+
+    class OpenPatch:
+        pass
+
+    OpenPatch.__annotations__ = {
+        "center": vector,
+        "normal": vector,
+        "first": vector,
+        "second": vector,
+        "half": pair,
+        "length": real,
+        "back": arithmetic.point,
+        "cell": pair,
+        "counts": counts,
+        "first_station": wp.int32,
+        "is_disc": wp.int32,
+        "kind": wp.int32,
+        "pressure": real,
+        "relaxation": real,
+        "averaging_time": real,
+        "area": real,
+    }
+    return wp.struct(OpenPatch)
+
+
+@cache
+def make_across(options: FluidOptions) -> Any:
+    """Return the device function `across(patch, away) -> pair`: coordinates across a patch of a way from its center."""
+    vector = options.arithmetic.vector
+    pair = wp.types.vector(2, options.arithmetic.real)
+    patch_type = make_patch_struct(options)
+
+    def across(patch: patch_type, away: vector):
+        s = pair()
+        s[0] = wp.dot(away, patch.first)
+        s[1] = wp.dot(away, patch.second)
+        return s
+
+    return wp.func(across)
+
+
+@cache
+def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
+    """Return the kernels of open boundaries specialised for the options."""
+    arithmetic = options.arithmetic
+    dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
+    record = arithmetic.record
+    unknowns = dim + 1
+    system = wp.types.matrix((unknowns, unknowns), real)
+    column = wp.types.vector(unknowns, real)
+    pair, counts_type = wp.types.vector(2, real), wp.types.vector(2, wp.int32)
+    patch_type = make_patch_struct(options)
+    constants_type, grid_type = make_constants_struct(arithmetic), make_grid_struct(arithmetic)
+    pack, unpack = make_packing(arithmetic)
+    separation = make_separation(arithmetic, options.periodic)
+    shape, _ = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
+    wrap, cell_of, row_base = make_cell_functions(arithmetic)
+    state = STATES[options.state].make(arithmetic)
+    stiffening = STATES[options.state].make_stiffening(arithmetic)
+    rows = 3 ** (dim - 1)
+    across = make_across(options)
+    module = options.module_of("open_boundary")
+
+    @wp.func
+    def deviation_of(p: real, c: constants_type):
+        deviation = p / (c.sound_speed * c.sound_speed)
+        for _ in range(wp.static(NEWTON_STEPS)):
+            excess = state(deviation, c.rest_density, c.sound_speed, c.state_parameters) - p
+            slope = stiffening(deviation, c.rest_density, c.sound_speed, c.state_parameters)
+            deviation -= excess / (c.sound_speed * c.sound_speed * slope)
+        return deviation
+
+    @wp.kernel(module=module, enable_backward=False)
+    def find_inside(
+        offset: int,
+        c: constants_type,
+        grid: grid_type,
+        start: wp.array(dtype=wp.int32),
+        patches: wp.array(dtype=patch_type),
+        patch_of: wp.array(dtype=wp.int32),
+        place: wp.array(dtype=vector),
+        tag: wp.array(dtype=wp.int32),
+        position_pressure: wp.array(dtype=record),
+        velocity_volume: wp.array(dtype=record),
+        inside: wp.array(dtype=record),
+        slope: wp.array(dtype=real),
+    ):
+        """One station: velocity and pressure of the fluid inside, the pressure carried on to the patch.
+
+        `place` lies one smoothing length inside. There a linear polynomial is fitted to the particles of the domain,
+        without those of buffers, by least squares with the weights V_b W_b (moving least squares, Lancaster &
+        Salkauskas 1981): exact for linear fields. `slope` is dp/dn. The cells are those of the last lists: no particle
+        has moved more than half the skin since.
+        """
+        i = offset + wp.tid()
+        x_g = place[i]
+        left = system()
+        pressures = column()
+        velocities = wp.matrix(shape=(wp.static(unknowns), wp.static(dim)), dtype=real)
+        cell = cell_of(x_g, grid)
+        for row in range(wp.static(rows)):
+            base = row_base(cell, row, grid)
+            for r in range(3):
+                bucket = base + wrap(cell[0] - 1 + r, grid.cells[0])
+                for b in range(start[bucket], start[bucket + 1]):
+                    if tag[b] < 0:
+                        xp_b = position_pressure[b]
+                        x_bg = -separation(x_g, unpack(xp_b), c.period)
+                        vV_b = velocity_volume[b]
+                        weight = vV_b[wp.static(dim)] * c.norm * shape(wp.length(x_bg) * c.inverse_h)
+                        if weight > real(0.0):
+                            basis = column()
+                            basis[0] = real(1.0)
+                            for k in range(wp.static(dim)):
+                                basis[k + 1] = x_bg[k] * c.inverse_h
+                            left += weight * wp.outer(basis, basis)
+                            pressures += weight * xp_b[wp.static(dim)] * basis
+                            velocities += weight * wp.outer(basis, unpack(vV_b))
+        v, p, dp = vector(), real(0.0), real(0.0)
+        # A neighbour at the rim of the support has no weight in single precision: there is nothing to fit.
+        if left[0, 0] > real(1.0e-6):
+            p = pressures[0] / left[0, 0]
+            for k in range(wp.static(dim)):
+                v[k] = velocities[0, k] / left[0, 0]
+            # Second moments of the kernel are of the order of a tenth of h^2.
+            if wp.determinant(left) > real(wp.static(SMALLEST_DETERMINANT * 0.2**dim)):
+                inverse = wp.inverse(left)
+                solved = inverse * pressures
+                flow = inverse * velocities
+                p = solved[0]
+                for k in range(wp.static(dim)):
+                    v[k] = flow[0, k]
+                    dp += solved[k + 1] * c.inverse_h * patches[patch_of[i]].normal[k]
+                p -= dp * c.smoothing_length
+        inside[i] = pack(v, p)
+        slope[i] = dp
+
+    @wp.kernel(module=module, enable_backward=False)
+    def average(
+        offset: int,
+        patches: wp.array(dtype=patch_type),
+        weight: wp.array(dtype=real),
+        inside: wp.array(dtype=record),
+        mean_pressure: wp.array(dtype=real),
+    ):
+        """One patch: mean pressure of the fluid inside over its stations [Pa]."""
+        k = offset + wp.tid()
+        patch = patches[k]
+        total = real(0.0)
+        for j in range(patch.counts[0] * patch.counts[1]):
+            i = patch.first_station + j
+            total += weight[i] * inside[i][wp.static(dim)]
+        mean_pressure[k] = total / patch.area
+
+    @wp.kernel(module=module, enable_backward=False)
+    def decide(
+        offset: int,
+        c: constants_type,
+        clock: wp.array(dtype=wp.float64),
+        patches: wp.array(dtype=patch_type),
+        patch_of: wp.array(dtype=wp.int32),
+        prescribed: wp.array(dtype=record),
+        inside: wp.array(dtype=record),
+        mean_pressure: wp.array(dtype=real),
+        undisturbed: wp.array(dtype=vector),
+        imposed: wp.array(dtype=record),
+    ):
+        """One station: velocity and pressure on the patch, from what is prescribed and what the fluid inside has.
+
+        Fluid enters along the normal unless its velocity is prescribed. non_reflecting: with u along the normal and
+        the undisturbed u_0, p_0, the wave that leaves is J = p - p_0 - rho c (u - u_0), and the one that enters is
+        nought, so that p = p_0 + J / 2 and u = u_0 - J / (2 rho c) (Lastiwka, Basa & Quinlan 2009); u_0 is a running
+        mean (Negi, Ramachandran & Haftu 2020).
+        """
+        i = offset + wp.tid()
+        k = patch_of[i]
+        patch = patches[k]
+        v, p = unpack(inside[i]), inside[i][wp.static(dim)]
+        step = real(clock[0])
+        if patch.kind == wp.static(VELOCITY):
+            v = unpack(prescribed[i])
+        else:
+            if patch.kind == wp.static(PRESSURE):
+                p = prescribed[i][wp.static(dim)]
+            if patch.kind == wp.static(ZERO_GRADIENT):
+                p -= patch.relaxation * (mean_pressure[k] - patch.pressure)
+            if patch.kind == wp.static(NON_REFLECTING):
+                rho_c = c.rest_density * c.sound_speed
+                still = v
+                if step > real(0.0):
+                    still = undisturbed[i] + step / (patch.averaging_time + step) * (v - undisturbed[i])
+                undisturbed[i] = still
+                wave = p - patch.pressure - rho_c * wp.dot(v - still, patch.normal)
+                change = -wave / (real(2.0) * rho_c) - wp.dot(v - still, patch.normal)
+                p = patch.pressure + real(0.5) * wave
+                v += change * patch.normal
+            u = wp.dot(v, patch.normal)
+            if u > real(0.0):
+                v = u * patch.normal
+        imposed[i] = pack(v, p)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def tally_flux(
+        offset: int,
+        c: constants_type,
+        clock: wp.array(dtype=wp.float64),
+        patches: wp.array(dtype=patch_type),
+        weight: wp.array(dtype=real),
+        imposed: wp.array(dtype=record),
+        flux: wp.array(dtype=wp.float64),
+        mass: wp.array(dtype=wp.float64),
+    ):
+        """One patch: mass that enters a second at the rest density [kg/s], and its integral over time [kg]."""
+        k = offset + wp.tid()
+        patch = patches[k]
+        total = wp.float64(0.0)
+        for j in range(patch.counts[0] * patch.counts[1]):
+            i = patch.first_station + j
+            total += wp.float64(weight[i] * wp.dot(unpack(imposed[i]), patch.normal))
+        flux[k] = wp.float64(c.rest_density) * total
+        mass[k] = mass[k] + clock[0] * flux[k]
+
+    @wp.kernel(module=module, enable_backward=False)
+    def impose(
+        offset: int,
+        c: constants_type,
+        patches: wp.array(dtype=patch_type),
+        tagged: wp.array(dtype=wp.int32),
+        tag: wp.array(dtype=wp.int32),
+        imposed: wp.array(dtype=record),
+        slope: wp.array(dtype=real),
+        velocity_volume: wp.array(dtype=record),
+        density_deviation: wp.array(dtype=real),
+        position_pressure: wp.array(dtype=record),
+    ):
+        """One particle of a buffer: velocity, pressure and density, linear between stations and along the normal."""
+        i = tagged[offset + wp.tid()]
+        patch = patches[tag[i]]
+        x = unpack(position_pressure[i])
+        away = separation(x, patch.center, c.period)
+        s = across(patch, away)
+        low = counts_type()
+        part = pair()
+        for k in range(wp.static(dim - 1)):
+            g = (s[k] + patch.half[k]) / patch.cell[k] - real(0.5)
+            low[k] = wp.clamp(int(wp.floor(g)), 0, wp.max(patch.counts[k] - 2, 0))
+            part[k] = wp.clamp(g - real(low[k]), real(-0.5), real(1.5))
+        values = record()
+        steepness = real(0.0)
+        for corner in range(wp.static(2 ** (dim - 1))):
+            first = wp.min(low[0] + corner % 2, patch.counts[0] - 1)
+            second = wp.min(low[1] + corner // 2, patch.counts[1] - 1)
+            w = wp.where(corner % 2 == 0, real(1.0) - part[0], part[0])
+            w *= wp.where(corner // 2 == 0, real(1.0) - part[1], part[1])
+            station = patch.first_station + first * patch.counts[1] + second
+            values += w * imposed[station]
+            steepness += w * slope[station]
+        p = values[wp.static(dim)] + steepness * wp.dot(away, patch.normal)
+        deviation = deviation_of(p, c)
+        density_deviation[i] = deviation
+        velocity_volume[i] = pack(unpack(values), c.mass / (c.rest_density + deviation))
+        position_pressure[i] = pack(x, p)
+
+    @wp.kernel(module=module, enable_backward=False)
+    def hold_motion(
+        offset: int,
+        tagged: wp.array(dtype=wp.int32),
+        shifts: int,
+        acceleration: wp.array(dtype=vector),
+        next_shift: wp.array(dtype=vector),
+    ):
+        """One particle of a buffer: no force changes its velocity, and nothing shifts it."""
+        i = tagged[offset + wp.tid()]
+        acceleration[i] = vector()
+        if shifts > 0:
+            next_shift[i] = vector()
+
+    @wp.kernel(module=module, enable_backward=False)
+    def hold_density(
+        offset: int,
+        tagged: wp.array(dtype=wp.int32),
+        position_density: wp.array(dtype=record),
+        density_rate: wp.array(dtype=real),
+        density_deviation: wp.array(dtype=real),
+    ):
+        """One particle of a buffer: the density that was imposed, which its record still holds, and no rate."""
+        i = tagged[offset + wp.tid()]
+        density_rate[i] = real(0.0)
+        density_deviation[i] = position_density[i][wp.static(dim)]
+
+    @wp.kernel(module=module, enable_backward=False)
+    def cover(offset: int, tagged: wp.array(dtype=wp.int32), coverage: wp.array(dtype=real)):
+        """One particle of a buffer: the fluid goes on behind it, so that it belongs to no surface."""
+        coverage[tagged[offset + wp.tid()]] = real(1.0)
+
+    return OpenBoundaryKernels(
+        find_inside,
+        average,
+        decide,
+        tally_flux,
+        impose,
+        hold_motion,
+        hold_density,
+        cover,
+    )

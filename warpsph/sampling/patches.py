@@ -1,0 +1,165 @@
+"""Geometry of open boundaries: frames, buffers, and the stations at which their values are found."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from itertools import product
+
+import numpy as np
+
+from warpsph.sampling.axes import same_axes
+from warpsph.sampling.lattice import TIE, Lattice
+from warpsph.sampling.regions import Period
+from warpsph.scene.open_boundaries import PatchShape
+from warpsph.scene.schema import Scene
+from warpsph.scene.types import AXES
+
+_SUBDIVISION = 16
+"""Points along an edge of a station's cell from which its part inside of a disc is counted."""
+
+
+@dataclass(frozen=True)
+class Patch:
+    """A patch and its buffer.
+
+    axes: (dimension, dimension), columns: the normal into the domain, then the directions across it; half: half lengths
+    across [m], of a disc its radius twice; length: of the buffer [m]; counts: stations along each direction across.
+    """
+
+    name: str
+    center: np.ndarray
+    axes: np.ndarray
+    half: np.ndarray
+    is_disc: bool
+    length: float
+    counts: tuple[int, ...]
+
+    def coordinates(self, points: np.ndarray, period: Period | None = None) -> np.ndarray:
+        """Coordinates (n, dimension) [m] of points (n, dimension): depth inside of the patch, then those across it."""
+        away = points - self.center
+        for axis, (low, high) in (period or {}).items():
+            away[:, axis] -= (high - low) * np.round(away[:, axis] / (high - low))
+        return away @ self.axes
+
+    def covers(self, across: np.ndarray, margin: float) -> np.ndarray:
+        """Which coordinates (n, dimension - 1) across lie on the patch or within `margin` [m] of it."""
+        if self.is_disc:
+            return np.linalg.norm(across, axis=1) <= self.half[0] + margin
+        return np.all(np.abs(across) <= self.half + margin, axis=1)
+
+    def behind(self, points: np.ndarray, margin: float, period: Period | None = None) -> np.ndarray:
+        """Which points (n, dimension) lie in the buffer or within `margin` [m] beside it."""
+        at = self.coordinates(points, period)
+        return (at[:, 0] < 0.0) & (at[:, 0] >= -self.length) & self.covers(at[:, 1:], margin)
+
+    @property
+    def area(self) -> float:
+        """Area [m2], in 2D length [m]."""
+        return math.pi * float(self.half[0]) ** 2 if self.is_disc else float(np.prod(2.0 * self.half))
+
+    @property
+    def cell(self) -> np.ndarray:
+        """Edges of a station's cell [m]."""
+        return 2.0 * self.half / np.array(self.counts)
+
+    @property
+    def stations(self) -> np.ndarray:
+        """Coordinates (s, dimension - 1) [m] across the patch of the middles of all cells, the last axis fastest."""
+        return self._grid(1)
+
+    @property
+    def weights(self) -> np.ndarray:
+        """Area (s,) of each station's cell that lies on the patch [m2; m in 2D]; together that of the patch."""
+        if not self.is_disc:
+            return np.full(math.prod(self.counts), float(np.prod(self.cell)))
+        inside = self.covers(self._grid(_SUBDIVISION), 0.0).astype(float)
+        fine = [n for count in self.counts for n in (count, _SUBDIVISION)]
+        share = inside.reshape(fine).mean(axis=(1, 3)).ravel()
+        return share * self.area / share.sum()
+
+    @property
+    def stand_ins(self) -> np.ndarray:
+        """Of each station (s,) the station whose middle lies on the patch and that stands for it."""
+        places = self.stations
+        on_patch = np.flatnonzero(self.covers(places, 0.0))
+        distance = np.linalg.norm(places[:, None] - places[on_patch][None], axis=2)
+        return on_patch[np.argmin(distance, axis=1)]
+
+    def points(self, across: np.ndarray, depth: float = 0.0) -> np.ndarray:
+        """Places (n, dimension) [m] of coordinates across the patch, at a depth [m] inside."""
+        return self.center + depth * self.axes[:, 0] + across @ self.axes[:, 1:].T
+
+    def _grid(self, parts: int) -> np.ndarray:
+        lines = [
+            half * ((2.0 * np.arange(parts * count) + 1.0) / (parts * count) - 1.0)
+            for half, count in zip(self.half, self.counts, strict=True)
+        ]
+        return np.array(list(product(*lines)))
+
+
+def patches_of(scene: Scene) -> list[Patch]:
+    """The patches of a scene in its order."""
+    return [
+        _patch(name, boundary.shape, scene.spacing, buffer_length(scene))
+        for name, boundary in scene.open_boundaries.items()
+    ]
+
+
+def buffer_length(scene: Scene) -> float:
+    """Length of a buffer [m]: a whole number of spacings, one more than the neighbour lists reach."""
+    return (math.ceil(scene.search_radius / scene.spacing - TIE) + 1) * scene.spacing
+
+
+def _patch(name: str, shape: PatchShape, spacing: float, length: float) -> Patch:
+    normal = np.array(shape.normal) / np.linalg.norm(shape.normal)
+    if shape.width is not None:
+        half = np.array([0.5 * shape.width])
+    elif shape.size is not None:
+        half = 0.5 * np.array(shape.size)
+    else:
+        half = np.full(2, float(shape.radius or 0.0))
+    counts = tuple(max(round(float(2.0 * h) / spacing), 1) for h in half)
+    axes = _frame(normal, shape.along)
+    return Patch(name, np.array(shape.center), axes, half, shape.radius is not None, length, counts)
+
+
+def _frame(normal: np.ndarray, along: tuple[float, ...] | None) -> np.ndarray:
+    """The normal and the directions across it, as columns."""
+    if len(normal) == 2:
+        return np.column_stack([normal, [-normal[1], normal[0]]])
+    wanted = np.array(along) if along is not None else _first_axis_across(normal)
+    first = wanted - (wanted @ normal) * normal
+    first = first / np.linalg.norm(first)
+    return np.column_stack([normal, first, np.cross(normal, first)])
+
+
+def _first_axis_across(normal: np.ndarray) -> np.ndarray:
+    steep = np.abs(normal) > 0.9
+    return np.eye(len(AXES))[int(np.argmin(steep))]
+
+
+def buffer_points(patch: Patch, lattice: Lattice) -> np.ndarray:
+    """Particles (n, dimension) [m] that fill a buffer: on the lattice of its fluid if that lies along the patch, else
+    on one of its own."""
+    dp = lattice.spacing
+    if not same_axes(patch.axes, lattice.rotation):
+        corner = patch.axes.T @ patch.center - np.concatenate([[0.0], 0.5 * _whole(patch, dp)])
+        lattice = Lattice(dp, corner, patch.axes)
+    half = np.concatenate([[0.5 * patch.length], patch.half])
+    middle = patch.center - 0.5 * patch.length * patch.axes[:, 0]
+    extent = np.abs(lattice.rotation.T @ patch.axes) @ half
+    first, count = lattice.cells_between(
+        lattice.rotation.T @ middle - extent - dp, lattice.rotation.T @ middle + extent + dp
+    )
+    cells = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), axis=-1)
+    points = lattice.centers(cells.reshape(-1, len(count)) + first)
+    at = patch.coordinates(points)
+    tie = TIE * dp
+    inside = (at[:, 0] <= -tie) & (at[:, 0] > -patch.length - tie) & patch.covers(at[:, 1:], -tie)
+    return points[inside]
+
+
+def _whole(patch: Patch, spacing: float) -> np.ndarray:
+    """Lengths across the patch in whole spacings [m]."""
+    return np.array(patch.counts) * spacing

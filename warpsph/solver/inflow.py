@@ -1,0 +1,24 @@
+"""What passes the open boundaries of a run."""
+
+from __future__ import annotations
+
+from warpsph_kernels.exchange import ENTERED, LEFT, REMOVED_BEHIND
+
+from warpsph.frame import Inflow
+from warpsph.particles.state import host_view
+from warpsph.solver.assemble import Parts
+
+
+def inflows(parts: Parts) -> dict[str, Inflow]:
+    """What has passed each open boundary, by name."""
+    opened = parts.open_boundaries
+    if opened is None:
+        return {}
+    flux, mass = host_view(opened.model.flux), host_view(opened.model.mass)
+    particle = float(parts.assembly.constants.mass)
+    found = {}
+    for k, patch in enumerate(opened.model.patches):
+        counts = [int(opened.exchange.counts[k, event]) for event in (ENTERED, LEFT, REMOVED_BEHIND)]
+        counted = particle * (counts[0] - counts[1])
+        found[patch.name] = Inflow(float(flux[k]), float(mass[k]), counted, *counts)
+    return found
