@@ -17,7 +17,7 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.cells import make_cell_kernels, make_grid_struct, make_list_kernel
 from warpsph_kernels.reorder import gather_words
 
-from warpsph.particles.launch import Launcher, Pass
+from warpsph.particles.launch import Launcher, Pass, lanes_on
 
 CELLS_PER_PARTICLE = 2
 """Largest number of cells in relation to the particles: beyond it the grid wraps around instead of growing."""
@@ -81,7 +81,8 @@ class NeighbourRows:
 
     @property
     def capacity(self) -> int:
-        return int(self.index.shape[1])
+        """Neighbours for which a row has room; the place behind them is spent by the listing."""
+        return int(self.index.shape[1]) - 1
 
     def grow(self, capacity: int) -> None:
         """Make room for `capacity` neighbours a row; the lists have to be filled again."""
@@ -89,9 +90,10 @@ class NeighbourRows:
 
     def _allocate(self, rows: int, capacity: int) -> wp.array:
         # A CPU core reads its row from end to end, a GPU warp reads the same column of 32 rows at once.
+        places = capacity + 1
         if self._launcher.device.is_cuda:
-            return wp.empty((capacity, rows), dtype=wp.int32, device=self._launcher.device).transpose()
-        return wp.empty((rows, capacity), dtype=wp.int32, device=self._launcher.device)
+            return wp.empty((places, rows), dtype=wp.int32, device=self._launcher.device).transpose()
+        return wp.empty((rows, places), dtype=wp.int32, device=self._launcher.device)
 
 
 class NeighbourSearch:
@@ -105,6 +107,7 @@ class NeighbourSearch:
         position: master positions of all particles, (n,) double vectors [m].
         sides: by position in `ranges`, a vector for each particle of a sided range: it is listed only with particles
             on the side to which its vector points, or all round where that is zero. Not for pairs of two such ranges.
+            Behind the last one are `lanes_on(device, dimension)` entries that are none.
     """
 
     def __init__(
@@ -127,13 +130,15 @@ class NeighbourSearch:
         self.builds = 0
         self._launcher = launcher
         self.reach = radius + skin
-        self._kernels = make_cell_kernels(arithmetic, space.periodic)
+        lanes = lanes_on(launcher.device, arithmetic.dimension)
+        self._kernels = make_cell_kernels(arithmetic, space.periodic, lanes)
         particles = sum(count for _, count in ranges)
         self.cells = self._choose_cells(particles)
         self.grid = self._describe_grid()
         buckets = int(np.prod(self.cells))
         self.tables = [CellTable(launcher, first, count, buckets) for first, count in ranges]
-        self.listed_position = wp.zeros(max(particles, 1), dtype=arithmetic.vector, device=launcher.device)
+        # The listing loads candidates a few at a time, and so looks beyond the last one.
+        self.listed_position = wp.zeros(particles + lanes, dtype=arithmetic.vector, device=launcher.device)
         self._first_capacity = self._estimate_neighbours(spacing)
         self.rows = [
             NeighbourRows(
@@ -148,7 +153,8 @@ class NeighbourSearch:
         self._sideless = wp.zeros(1, dtype=arithmetic.vector, device=launcher.device)
         if self._sides:
             self._list_kernels = {
-                sided: make_list_kernel(arithmetic, space.periodic, sided) for sided in ("targets", "sources")
+                sided: make_list_kernel(arithmetic, space.periodic, sided, lanes)
+                for sided in ("targets", "sources")
             }
         self._listed = [
             Reordered(launcher, self.listed_position, table, table.first) for table in self.tables

@@ -12,7 +12,7 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.clock import CLOCK_SIZE
 
 from warpsph.laws.states import STATE_LAWS
-from warpsph.particles.launch import Launcher
+from warpsph.particles.launch import Launcher, lanes_on
 from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
 from warpsph.physics.assembly import Assembly, WallRange, WallSurface
@@ -113,7 +113,8 @@ def assemble(
     assembly = _shared(scene, sets, sampled, launcher)
     layout, arithmetic = assembly.layout, assembly.options.arithmetic
     _fill_state(scene, sets, sampled, assembly)
-    sides = wp.zeros(max(layout.faces, 1), dtype=arithmetic.vector, device=launcher.device)
+    lanes = lanes_on(launcher.device, arithmetic.dimension)
+    sides = wp.zeros(layout.faces + lanes, dtype=arithmetic.vector, device=launcher.device)
     tables = Tables.of(layout)
     search = _make_search(scene, assembly, tables, sides)
     surface = make_wall_surface(arithmetic, _no_slip(scene, sets, sampled), launcher.device)
@@ -138,7 +139,7 @@ def _shared(
     layout = _layout(scene, sets, len(faces.owner) if faces else 0)
     space = search_space(scene, sets)
     sound_speed = choose_sound_speed(scene, sets, largest_speed(scene, sets))
-    options = select_code(scene, arithmetic, space, has_walls=layout.solids > 0)
+    options = select_code(scene, arithmetic, space, layout.solids > 0, launcher.device)
     return Assembly(
         launcher=launcher,
         options=options,
