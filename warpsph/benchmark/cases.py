@@ -31,9 +31,13 @@ class BenchmarkCase:
         return load_scene(self.scene, [*self.overrides, *extra])
 
     @property
+    def dimension(self) -> int:
+        return 3 if self.name.endswith("3d") else 2
+
+    @property
     def overrides(self) -> tuple[str, ...]:
         """What differs from the shipped scene, as `key=value`: with these `warpsph run` runs it."""
-        spacing = (self.content / self.particles) ** (1.0 / (3 if self.name.endswith("3d") else 2))
+        spacing = (self.content / self.particles) ** (1.0 / self.dimension)
         starts = (f"fluids.{name}.velocity=[{', '.join(v)}]" for name, v in self.velocity.items())
         return (f"spacing={spacing:.5g}", *starts)
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
@@ -73,7 +73,7 @@ def memory_bandwidth(device: str, threads: int, repeats: int = 5) -> float:
     return 2.0 * COPIED / min(copy() for _ in range(repeats))
 
 
-def _copy_on_cpu(threads: int):  # type: ignore[no-untyped-def]
+def _copy_on_cpu(threads: int) -> Callable[[], float]:
     source, target = np.ones(COPIED // 8), np.zeros(COPIED // 8)
     pairs = list(zip(np.array_split(source, threads), np.array_split(target, threads), strict=True))
     pool = ThreadPoolExecutor(threads)
@@ -86,7 +86,7 @@ def _copy_on_cpu(threads: int):  # type: ignore[no-untyped-def]
     return copy
 
 
-def _copy_on_gpu(device: str):  # type: ignore[no-untyped-def]
+def _copy_on_gpu(device: str) -> Callable[[], float]:
     source = wp.zeros(COPIED // 8, dtype=wp.float64, device=device)
     target = wp.zeros_like(source)
 

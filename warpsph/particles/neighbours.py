@@ -25,6 +25,12 @@ FIRST_CAPACITY_MARGIN = 1.25
 GROWTH = 1.3
 
 
+def first_capacity(reach: float, dimension: int) -> int:
+    """Neighbours for which a row has room at first: a quarter more than a lattice has within so many spacings."""
+    ball = math.pi * reach**2 if dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
+    return math.ceil(FIRST_CAPACITY_MARGIN * ball)
+
+
 @dataclass(frozen=True)
 class SearchSpace:
     """Where particles are searched for, in metres and world coordinates.
@@ -64,6 +70,19 @@ class CellTable:
         self.start = wp.zeros(buckets + 1, dtype=wp.int32, device=device)
         self.key = wp.zeros(2 * max(capacity, 1), dtype=wp.int32, device=device)
         self.order = wp.zeros(2 * max(capacity, 1), dtype=wp.int32, device=device)
+        self._spare = wp.empty(0, dtype=wp.uint32, device=device)
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the table and of what sorting takes."""
+        return sum(int(array.capacity) for array in (self.start, self.key, self.order, self._spare))
+
+    def spare(self, words: int) -> wp.array:
+        """Scratch for an array of so many 4-byte words a particle, the same memory for all that follow the table."""
+        size = len(self.order) // 2
+        if len(self._spare) < size * words:
+            self._spare = wp.empty(size * words, dtype=wp.uint32, device=self._spare.device)
+        return self._spare[: size * words].reshape((size, words))
 
 
 class NeighbourRows:
@@ -139,7 +158,7 @@ class NeighbourSearch:
         self.tables = [CellTable(launcher, first, count, buckets) for first, count in ranges]
         # The listing loads candidates a few at a time, and so looks beyond the last one.
         self.listed_position = wp.zeros(particles + lanes, dtype=arithmetic.vector, device=launcher.device)
-        self._first_capacity = self._estimate_neighbours(spacing)
+        self._first_capacity = first_capacity(self.reach / spacing, arithmetic.dimension)
         self.rows = [
             NeighbourRows(
                 launcher,
@@ -211,10 +230,13 @@ class NeighbourSearch:
 
     @property
     def bytes(self) -> int:
-        """Memory of lists and cell tables."""
-        lists = sum(rows.index.capacity + rows.ends.capacity for rows in self.rows)
-        tables = sum(t.start.capacity + t.key.capacity + t.order.capacity for t in self.tables)
-        return int(lists + tables + self.listed_position.capacity)
+        """Memory of cell tables and sorting, without the lists."""
+        return sum(table.bytes for table in self.tables) + int(self.listed_position.capacity)
+
+    @property
+    def list_bytes(self) -> int:
+        """Memory of the neighbour lists."""
+        return sum(int(rows.index.capacity + rows.ends.capacity) for rows in self.rows)
 
     def _choose_cells(self, particles: int) -> np.ndarray:
         extent = self.space.high - self.space.low
@@ -238,11 +260,6 @@ class NeighbourSearch:
         grid.cells = arithmetic.integers(*(int(n) for n in self.cells))
         grid.period = arithmetic.vector(*space.period)
         return grid
-
-    def _estimate_neighbours(self, spacing: float) -> int:
-        reach = self.reach / spacing
-        ball = math.pi * reach**2 if self.arithmetic.dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
-        return math.ceil(FIRST_CAPACITY_MARGIN * ball)
 
     def _bind_take(self, table: CellTable, position: wp.array) -> Pass:
         space, point = self.space, self.arithmetic.point
@@ -314,7 +331,7 @@ class NeighbourSearch:
 
 
 class Reordered:
-    """An array that follows the order of a table, in place, with the scratch that this takes.
+    """An array that follows the order of a table, in place.
 
     Args:
         first: index in the array of the table's first particle.
@@ -323,7 +340,7 @@ class Reordered:
     def __init__(self, launcher: Launcher, array: wp.array, table: CellTable, first: int) -> None:
         words = wp.types.type_size_in_bytes(array.dtype) // 4
         size = max(table.count, 1)
-        self._scratch = wp.empty((size, words), dtype=wp.uint32, device=launcher.device)
+        self._scratch = table.spare(words)
         self._own = self._scratch if not table.count else _words_of(array[first : first + size], words)
         self._gather = launcher.bind("sort", gather_words, table.order, self._own, self._scratch)
         self._owner = array  # the words above are a view of its memory
