@@ -22,7 +22,7 @@ LAYERS: tuple[tuple[str, ...], ...] = (
     ("warpsph.probes",),
     ("warpsph.physics", "warpsph.comparison"),
     ("warpsph.solver", "warpsph.rendering"),
-    ("warpsph.validation",),
+    ("warpsph.validation", "warpsph.benchmark"),
     ("warpsph.report",),
     ("warpsph.cli",),
 )

@@ -10,6 +10,7 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.fluid import FluidOptions, make_pair_force
+from warpsph_kernels.lanes import make_lanes
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
@@ -40,6 +41,9 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
+    lanes, L = make_lanes(arithmetic, options.lanes), options.lanes
+    take, records, numbers = lanes.take, lanes.records, lanes.numbers
+    sums_type, scalars_type, fold, fold_scalar = lanes.sums, lanes.scalars, lanes.fold, lanes.fold_scalar
 
     @wp.kernel(module=module, enable_backward=False)
     def extrapolate(
@@ -62,20 +66,38 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         w = first_wall + i
         xp_w = position_pressure[w]
         x_w = unpack(xp_w)
-        weight = real(0.0)
-        pressure = real(0.0)
-        moment = vector()
-        velocity = vector()
-        for n in range(ends[i, 0]):
-            b = neighbours[i, n]
-            xp_b = position_pressure[b]
-            x_wb = separation(x_w, unpack(xp_b), c.period)
-            W = c.norm * shape(wp.length(x_wb) * c.inverse_h)
-            weight += W
-            pressure += W * xp_b[dim]
-            moment += W * (c.rest_density + density_deviation[b]) * x_wb
+        weights = scalars_type()
+        pressures = scalars_type()
+        moments = sums_type()
+        velocities = sums_type()
+        end = ends[i, 0]
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            deviations = numbers(density_deviation, b)
             if wp.static(options.wall_friction):
-                velocity += W * unpack(velocity_volume[b])
+                vV_b = records(velocity_volume, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                x_wb = separation(x_w, x_b, c.period)
+                W = wp.where(n + k < end, c.norm * shape(wp.length(x_wb) * c.inverse_h), real(0.0))
+                weights[k] = weights[k] + W
+                pressures[k] = pressures[k] + W * xp_b[k + wp.static(L * dim)]
+                m = W * (c.rest_density + deviations[k])
+                for d in range(wp.static(dim)):
+                    moments[k + wp.static(L * d)] = moments[k + wp.static(L * d)] + m * x_wb[d]
+                    if wp.static(options.wall_friction):
+                        carried = W * vV_b[k + wp.static(L * d)]
+                        velocities[k + wp.static(L * d)] = velocities[k + wp.static(L * d)] + carried
+                k += 1
+            n += wp.static(L)
+        weight = fold_scalar(weights)
+        pressure = fold_scalar(pressures)
+        moment = fold(moments)
         p_w = real(0.0)
         v_seen = unpack(velocity_volume[w])
         # A neighbour at the rim of the support has no weight in single precision: there is nothing to average.
@@ -86,7 +108,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
             if wp.static(not options.wall_suction):
                 p_w = wp.max(p_w, real(0.0))
             if wp.static(options.wall_friction):
-                v_seen = real(2.0) * v_seen - velocity / weight
+                v_seen = real(2.0) * v_seen - fold(velocities) / weight
         position_pressure[w] = pack(x_w, p_w)
         if wp.static(options.wall_friction):
             friction[i] = pack(v_seen, friction[i][dim])

@@ -11,6 +11,7 @@ from typing import Any, Literal, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_separation
+from warpsph_kernels.lanes import make_lanes
 
 REMOVED = wp.constant(wp.int32(2147483647))
 """Sort key of a particle that leaves the run: it ends up behind all others."""
@@ -76,24 +77,30 @@ def make_cell_functions(arithmetic: Arithmetic) -> tuple[Any, Any, Any]:
     return wrap, cell_of, row_base
 
 
-def module_of(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> str:
+def module_of(arithmetic: Arithmetic, periodic: tuple[bool, ...], lanes: int) -> str:
     """Name of the module of the search's kernels."""
     axes = "".join("p" if flag else "o" for flag in periodic)
-    return f"warpsph_cells_{arithmetic.label}_{axes}"
+    return f"warpsph_cells_{arithmetic.label}_{axes}_{lanes}"
 
 
 Sided = Literal["neither", "targets", "sources"]
 
 
 @cache
-def make_list_kernel(arithmetic: Arithmetic, periodic: tuple[bool, ...], sided: Sided = "neither") -> Any:
-    """Return the kernel `list_neighbours`; particles that are `sided` take part only in pairs on their own side."""
+def make_list_kernel(
+    arithmetic: Arithmetic, periodic: tuple[bool, ...], sided: Sided = "neither", lanes: int = 1
+) -> Any:
+    """Return the kernel `list_neighbours`; particles that are `sided` take part only in pairs on their own side.
+
+    It looks at as many candidates at a time as there are `lanes`.
+    """
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
     grid_type = make_grid_struct(arithmetic)
     separation = make_separation(arithmetic, periodic)
     rows = 3 ** (dim - 1)
     wrap, cell_of, row_base = make_cell_functions(arithmetic)
-    module = module_of(arithmetic, periodic) + ("" if sided == "neither" else f"_sided_{sided}")
+    module = module_of(arithmetic, periodic, lanes) + ("" if sided == "neither" else f"_sided_{sided}")
+    stretch, hits_type = make_lanes(arithmetic, lanes).stretch, make_lanes(arithmetic, lanes).hits
 
     @wp.kernel(module=module, enable_backward=False)
     def list_neighbours(
@@ -113,15 +120,19 @@ def make_list_kernel(arithmetic: Arithmetic, periodic: tuple[bool, ...], sided: 
         """One target particle: append all sources within the radius (but not itself) to its row.
 
         Segment s of row i holds the neighbours ends[i, s-1] .. ends[i, s]; if it `continues`, it has neighbours of an
-        earlier range already. What does not fit into the row is
-        counted and not stored; the host then makes the rows longer and repeats. A sided particle s has a vector n_s in
-        `side`, and makes no pair with particles at x where n_s . (x - x_s) < 0.
+        earlier range already. What does not fit into the row is counted and not stored; the host then makes the rows
+        longer and repeats. A sided particle s has a vector n_s in `side`, and makes no pair with particles at x where
+        n_s . (x - x_s) < 0.
+
+        Every candidate is written behind the neighbours found, and the next one over it unless it is one: the place
+        is spent, and no branch on what cannot be foreseen. So the last place of a row holds no neighbour, and the
+        arrays of the candidates end with `lanes` entries that are none.
         """
         i = offset + wp.tid()
         a = first_target + i
         x_a = listed_position[a]
         cell = cell_of(x_a, grid)
-        capacity = neighbours.shape[1]
+        last = neighbours.shape[1] - 1
         found = int(0)
         if segment > 0:
             found = ends[i, segment - 1]
@@ -135,30 +146,53 @@ def make_list_kernel(arithmetic: Arithmetic, periodic: tuple[bool, ...], sided: 
             base = row_base(cell, row, grid)
             for r in range(ranges):
                 bucket = base + wrap(cell[0] - 1 + r, grid.cells[0])
-                for j in range(start[bucket], start[bucket + width]):
-                    b = first_source + j
-                    x_ab = separation(x_a, listed_position[b], grid.period)
-                    near = wp.dot(x_ab, x_ab) < radius * radius and b != a
+                j = int(start[bucket])
+                stop = start[bucket + width]
+                while j < stop:
+                    x_b = stretch(listed_position, first_source + j)
                     if wp.static(sided == "sources"):
-                        near = near and wp.dot(side[j], x_ab) >= real(0.0)
-                    if wp.static(sided == "targets"):
-                        near = near and wp.dot(side[i], -x_ab) >= real(0.0)
-                    if near:
-                        if found < capacity:
-                            neighbours[i, found] = b
-                        found += 1
+                        sides = stretch(side, j)
+                    hits = hits_type()
+                    hit_count = int(0)
+                    k = int(0)
+                    while k < wp.static(lanes):
+                        x = vector()
+                        for d in range(wp.static(dim)):
+                            x[d] = x_b[wp.static(dim) * k + d]
+                        x_ab = separation(x_a, x, grid.period)
+                        reach = wp.where(
+                            j + k < stop and first_source + j + k != a, radius * radius, real(0.0)
+                        )
+                        if wp.static(sided == "sources"):
+                            away = real(0.0)
+                            for d in range(wp.static(dim)):
+                                away += sides[wp.static(dim) * k + d] * x_ab[d]
+                            reach = wp.where(away >= real(0.0), reach, real(0.0))
+                        if wp.static(sided == "targets"):
+                            reach = wp.where(wp.dot(side[i], x_ab) <= real(0.0), reach, real(0.0))
+                        hit = wp.where(wp.dot(x_ab, x_ab) < reach, 1, 0)
+                        hits[k] = hit
+                        hit_count += hit
+                        k += 1
+                    if hit_count > 0:
+                        k = int(0)
+                        while k < wp.static(lanes):
+                            neighbours[i, wp.min(found, last)] = first_source + j + k
+                            found += hits[k]
+                            k += 1
+                    j += wp.static(lanes)
         ends[i, segment] = found
 
     return list_neighbours
 
 
 @cache
-def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> CellKernels:
+def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...], lanes: int) -> CellKernels:
     """Return the kernels of the neighbour search for one dimension, precision and set of periodic axes."""
     dim, vector, point = arithmetic.dimension, arithmetic.vector, arithmetic.point
     grid_type = make_grid_struct(arithmetic)
     narrow = make_narrow(arithmetic)
-    module = module_of(arithmetic, periodic)
+    module = module_of(arithmetic, periodic, lanes)
     _, cell_of, _ = make_cell_functions(arithmetic)
 
     @wp.kernel(module=module, enable_backward=False)
@@ -221,5 +255,9 @@ def make_cell_kernels(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Cel
         start[bucket] = low
 
     return CellKernels(
-        take_positions, assign_cells, find_cell_starts, make_list_kernel(arithmetic, periodic), module
+        take_positions,
+        assign_cells,
+        find_cell_starts,
+        make_list_kernel(arithmetic, periodic, lanes=lanes),
+        module,
     )

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation, make_widen
+from warpsph_kernels.lanes import make_lanes
 from warpsph_kernels.pair_terms import (
     DIFFUSIONS,
     PRESSURE_FORMS,
@@ -48,6 +49,8 @@ class FluidOptions:
     """Where the density comes from: continuity, summation or mixed."""
     kernel_gradient: str = "plain"
     """First derivatives of pressure and velocity: plain, renormalised or finite_particle."""
+    lanes: int = 1
+    """Neighbours that a pair loop takes at a time, see `lanes`."""
 
     @property
     def has_barrier(self) -> bool:
@@ -123,6 +126,9 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     has_walls = options.wall != "none"
     shifts = options.particle_order != "none"
     barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
+    lanes, L = make_lanes(arithmetic, options.lanes), options.lanes
+    take, records, vectors, fold = lanes.take, lanes.records, lanes.vectors, lanes.fold
+    sums_type, scalars_type, fold_scalar = lanes.sums, lanes.scalars, lanes.fold_scalar
 
     @wp.kernel(module=module, enable_backward=False)
     def begin_step(
@@ -198,31 +204,65 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         vV_a = velocity_volume[i]
         x_a, p_a = unpack(xp_a), xp_a[dim]
         v_a, V_a = unpack(vV_a), vV_a[dim]
-        total = vector()
+        sums = sums_type()
         end = ends[i, 0]
-        for n in range(end):
-            b = neighbours[i, n]
-            xp_b = position_pressure[b]
-            vV_b = velocity_volume[b]
-            x_ab = separation(x_a, unpack(xp_b), c.period)
-            v_ab = v_a - unpack(vV_b)
-            total += vV_b[dim] * fluid_force(c, x_ab, v_ab, v_ab, p_a, xp_b[dim])
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            vV_b = records(velocity_volume, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                v_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                    v_b[d] = vV_b[k + wp.static(L * d)]
+                V_b = wp.where(n + k < end, vV_b[k + wp.static(L * dim)], real(0.0))
+                x_ab = separation(x_a, x_b, c.period)
+                v_ab = v_a - v_b
+                force = V_b * fluid_force(c, x_ab, v_ab, v_ab, p_a, xp_b[k + wp.static(L * dim)])
+                for d in range(wp.static(dim)):
+                    sums[k + wp.static(L * d)] = sums[k + wp.static(L * d)] + force[d]
+                k += 1
+            n += wp.static(L)
         if wp.static(has_walls):
-            for n in range(end, ends[i, 1]):
-                b = neighbours[i, n]
-                xp_b = position_pressure[b]
-                x_ab = separation(x_a, unpack(xp_b), c.period)
-                v_ab = vector()
+            n = int(end)
+            end = ends[i, 1]
+            while n < end:
+                b = take(neighbours, i, n, end)
+                xp_b = records(position_pressure, b, 0)
                 if wp.static(options.wall_friction):
-                    friction_b = friction[b - first_wall]
-                    v_ab = friction_b[dim] * (v_a - unpack(friction_b))
-                u_ab = vector()
+                    friction_b = records(friction, b, first_wall)
                 if wp.static(options.pressure_form == "riemann"):
-                    u_ab = v_a - unpack(velocity_volume[b])
-                force = wall_force(c, x_ab, v_ab, u_ab, p_a, xp_b[dim])
+                    vV_b = records(velocity_volume, b, 0)
                 if wp.static(options.has_barrier):
-                    force += barrier(c, x_ab, wall_normal[b - first_wall])
-                total += c.wall_volume * force
+                    normals = vectors(wall_normal, b, first_wall)
+                k = int(0)
+                while k < wp.static(L):
+                    x_b = vector()
+                    v_ab = vector()
+                    u_ab = vector()
+                    normal_b = vector()
+                    for d in range(wp.static(dim)):
+                        x_b[d] = xp_b[k + wp.static(L * d)]
+                        if wp.static(options.wall_friction):
+                            rough = friction_b[k + wp.static(L * dim)]
+                            v_ab[d] = rough * (v_a[d] - friction_b[k + wp.static(L * d)])
+                        if wp.static(options.pressure_form == "riemann"):
+                            u_ab[d] = v_a[d] - vV_b[k + wp.static(L * d)]
+                        if wp.static(options.has_barrier):
+                            normal_b[d] = normals[k + wp.static(L * d)]
+                    x_ab = separation(x_a, x_b, c.period)
+                    force = wall_force(c, x_ab, v_ab, u_ab, p_a, xp_b[k + wp.static(L * dim)])
+                    if wp.static(options.has_barrier):
+                        force += barrier(c, x_ab, normal_b)
+                    force *= wp.where(n + k < end, c.wall_volume, real(0.0))
+                    for d in range(wp.static(dim)):
+                        sums[k + wp.static(L * d)] = sums[k + wp.static(L * d)] + force[d]
+                    k += 1
+                n += wp.static(L)
+        total = fold(sums)
         acceleration[i] = c.gravity + V_a / c.mass * total
 
     @wp.kernel(module=module, enable_backward=False)
@@ -274,30 +314,62 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         xd_a = position_density[i]
         x_a, deviation_a = unpack(xd_a), xd_a[dim]
         v_a = unpack(velocity_volume[i])
-        divergence = real(0.0)
-        diffused = real(0.0)
+        divergences = scalars_type()
+        diffusions = scalars_type()
         gradient_a = vector()
         if wp.static(options.density_diffusion == "delta_sph"):
             gradient_a = density_gradient[i]
         end = ends[i, 0]
-        for n in range(end):
-            b = neighbours[i, n]
-            xd_b = position_density[b]
-            vV_b = velocity_volume[b]
-            x_ab = separation(x_a, unpack(xd_b), c.period)
-            r = wp.length(x_ab)
-            VF = vV_b[dim] * c.slope_norm * slope(r * c.inverse_h)
-            divergence += VF * wp.dot(v_a - unpack(vV_b), x_ab)
-            if wp.static(options.density_diffusion != "none"):
-                diffused += VF * diffusion(c, x_ab, deviation_a, xd_b[dim])
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xd_b = records(position_density, b, 0)
+            vV_b = records(velocity_volume, b, 0)
             if wp.static(options.density_diffusion == "delta_sph"):
-                diffused -= VF * wp.dot(gradient_a + density_gradient[b], x_ab)
+                gradients = vectors(density_gradient, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                v_b = vector()
+                gradient_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xd_b[k + wp.static(L * d)]
+                    v_b[d] = vV_b[k + wp.static(L * d)]
+                    if wp.static(options.density_diffusion == "delta_sph"):
+                        gradient_b[d] = gradients[k + wp.static(L * d)]
+                V_b = wp.where(n + k < end, vV_b[k + wp.static(L * dim)], real(0.0))
+                x_ab = separation(x_a, x_b, c.period)
+                VF = V_b * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
+                divergences[k] = divergences[k] + VF * wp.dot(v_a - v_b, x_ab)
+                excess = diffusion(c, x_ab, deviation_a, xd_b[k + wp.static(L * dim)])
+                if wp.static(options.density_diffusion == "delta_sph"):
+                    excess -= wp.dot(gradient_a + gradient_b, x_ab)
+                if wp.static(options.density_diffusion != "none"):
+                    diffusions[k] = diffusions[k] + VF * excess
+                k += 1
+            n += wp.static(L)
         if wp.static(has_walls):
-            for n in range(end, ends[i, 1]):
-                b = neighbours[i, n]
-                x_ab = separation(x_a, unpack(position_density[b]), c.period)
-                F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
-                divergence += c.wall_volume * F * wp.dot(v_a - unpack(velocity_volume[b]), x_ab)
+            n = int(end)
+            end = ends[i, 1]
+            while n < end:
+                b = take(neighbours, i, n, end)
+                xd_b = records(position_density, b, 0)
+                vV_b = records(velocity_volume, b, 0)
+                k = int(0)
+                while k < wp.static(L):
+                    x_b = vector()
+                    v_b = vector()
+                    for d in range(wp.static(dim)):
+                        x_b[d] = xd_b[k + wp.static(L * d)]
+                        v_b[d] = vV_b[k + wp.static(L * d)]
+                    V_b = wp.where(n + k < end, c.wall_volume, real(0.0))
+                    x_ab = separation(x_a, x_b, c.period)
+                    F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
+                    divergences[k] = divergences[k] + V_b * F * wp.dot(v_a - v_b, x_ab)
+                    k += 1
+                n += wp.static(L)
+        divergence = fold_scalar(divergences)
+        diffused = fold_scalar(diffusions)
         rate = (c.rest_density + deviation_a) * divergence + c.diffusion * diffused
         density_rate[i] = rate
         density_deviation[i] = deviation_a + real(wp.float64(0.5) * clock[0]) * rate

@@ -181,15 +181,15 @@ def make_barrier(arithmetic: Arithmetic) -> Any:
         across = x_ab - d * normal
         s = wp.length(across) * c.inverse_spacing
         depth = real(1.0) - d * c.inverse_barrier_reach
-        force = vector()
-        if depth > real(0.0) and s < real(1.0) and d * c.inverse_spacing > real(-0.5):
-            push = wp.min(depth, real(1.0))
-            energy = real(0.5) * push * push + wp.max(depth - real(1.0), real(0.0))
-            outward = real(1.0) - s
-            weight = outward * outward * (real(1.0) + real(2.0) * s)
-            slope_over_s = real(6.0) * outward * c.inverse_spacing * c.inverse_spacing
-            force = push * weight * normal + energy / c.inverse_barrier_reach * slope_over_s * across
-        return c.barrier * force
+        # Zeros instead of branches: a loop with branches has no vector instructions.
+        push = wp.clamp(depth, real(0.0), real(1.0))
+        energy = real(0.5) * push * push + wp.max(depth - real(1.0), real(0.0))
+        outward = wp.max(real(1.0) - s, real(0.0))
+        weight = outward * outward * (real(1.0) + real(2.0) * s)
+        slope_over_s = real(6.0) * outward * c.inverse_spacing * c.inverse_spacing
+        force = push * weight * normal + energy / c.inverse_barrier_reach * slope_over_s * across
+        strength = wp.where(d * c.inverse_spacing > real(-0.5), c.barrier, real(0.0))
+        return strength * force
 
     return wp.func(barrier)
 

@@ -80,7 +80,7 @@ def test_device_code_compiles_for_cuda(tmp_path, dimension, precision, wall):
     make_sum_density(options)
     faces = make_face_kernels(options, moving_clamps=dimension == 2)
     sided = [make_list_kernel(arithmetic, periodic, which) for which in ("targets", "sources")]
-    cells = make_cell_kernels(arithmetic, periodic).module
+    cells = make_cell_kernels(arithmetic, periodic, lanes=1).module
     clock = make_clock_kernels(arithmetic, options.state).module
     extra = [options.module_of(concept) for concept in CONCEPTS]
     of_structures = [kernel.module.name for kernel in (faces.place, *sided)]

@@ -7,6 +7,7 @@ from typing import Annotated
 import typer
 
 from warpsph import __version__
+from warpsph.cli.bench import bench
 from warpsph.cli.info import info
 from warpsph.cli.plan import plan
 from warpsph.cli.render import render
@@ -21,7 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-for command in (run, plan, info, scenes, validate, schema, render):
+for command in (run, plan, info, scenes, validate, bench, schema, render):
     app.command()(command)
 
 

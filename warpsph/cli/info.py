@@ -49,6 +49,8 @@ def show_description(console: Console, description: Mapping[str, Any], end: floa
     console.print()
     fields = ((f["name"], f["unit"], size_in_words(f["bytes"])) for f in description["fields"])
     console.print(_table(("field", "unit", "memory"), fields))
+    if "search_bytes" in description:
+        console.print(f"cells and sorting {size_in_words(description['search_bytes'])}")
     console.print(f"neighbour lists {size_in_words(description['list_bytes'])}")
     console.print(f"in all {description['bytes_per_particle']:.0f} bytes a particle\n")
     limits = sorted(description["step_limits_s"].items(), key=lambda item: item[1])

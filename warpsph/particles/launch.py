@@ -17,6 +17,7 @@ from queue import SimpleQueue
 from typing import Any
 
 import warp as wp
+from warpsph_kernels.lanes import ON_CPU
 
 WORTH_SPLITTING = 3.0e-4
 """Seconds on one thread from which handing chunks to other threads pays for itself (a hand-over costs about 0.1 ms)."""
@@ -27,6 +28,11 @@ TRIAL_RUNS = 5
 def available_cores() -> int:
     """Return the number of cores that this process may use."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def lanes_on(device: Any, dimension: int) -> int:
+    """Neighbours that a pair loop takes at a time on a device."""
+    return ON_CPU[dimension] if device.is_cpu else 1
 
 
 class _Workers:

@@ -17,12 +17,18 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.cells import make_cell_kernels, make_grid_struct, make_list_kernel
 from warpsph_kernels.reorder import gather_words
 
-from warpsph.particles.launch import Launcher, Pass
+from warpsph.particles.launch import Launcher, Pass, lanes_on
 
 CELLS_PER_PARTICLE = 2
 """Largest number of cells in relation to the particles: beyond it the grid wraps around instead of growing."""
 FIRST_CAPACITY_MARGIN = 1.25
 GROWTH = 1.3
+
+
+def first_capacity(reach: float, dimension: int) -> int:
+    """Neighbours for which a row has room at first: a quarter more than a lattice has within so many spacings."""
+    ball = math.pi * reach**2 if dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
+    return math.ceil(FIRST_CAPACITY_MARGIN * ball)
 
 
 @dataclass(frozen=True)
@@ -64,6 +70,19 @@ class CellTable:
         self.start = wp.zeros(buckets + 1, dtype=wp.int32, device=device)
         self.key = wp.zeros(2 * max(capacity, 1), dtype=wp.int32, device=device)
         self.order = wp.zeros(2 * max(capacity, 1), dtype=wp.int32, device=device)
+        self._spare = wp.empty(0, dtype=wp.uint32, device=device)
+
+    @property
+    def bytes(self) -> int:
+        """Memory of the table and of what sorting takes."""
+        return sum(int(array.capacity) for array in (self.start, self.key, self.order, self._spare))
+
+    def spare(self, words: int) -> wp.array:
+        """Scratch for an array of so many 4-byte words a particle, the same memory for all that follow the table."""
+        size = len(self.order) // 2
+        if len(self._spare) < size * words:
+            self._spare = wp.empty(size * words, dtype=wp.uint32, device=self._spare.device)
+        return self._spare[: size * words].reshape((size, words))
 
 
 class NeighbourRows:
@@ -81,7 +100,8 @@ class NeighbourRows:
 
     @property
     def capacity(self) -> int:
-        return int(self.index.shape[1])
+        """Neighbours for which a row has room; the place behind them is spent by the listing."""
+        return int(self.index.shape[1]) - 1
 
     def grow(self, capacity: int) -> None:
         """Make room for `capacity` neighbours a row; the lists have to be filled again."""
@@ -89,9 +109,10 @@ class NeighbourRows:
 
     def _allocate(self, rows: int, capacity: int) -> wp.array:
         # A CPU core reads its row from end to end, a GPU warp reads the same column of 32 rows at once.
+        places = capacity + 1
         if self._launcher.device.is_cuda:
-            return wp.empty((capacity, rows), dtype=wp.int32, device=self._launcher.device).transpose()
-        return wp.empty((rows, capacity), dtype=wp.int32, device=self._launcher.device)
+            return wp.empty((places, rows), dtype=wp.int32, device=self._launcher.device).transpose()
+        return wp.empty((rows, places), dtype=wp.int32, device=self._launcher.device)
 
 
 class NeighbourSearch:
@@ -105,6 +126,7 @@ class NeighbourSearch:
         position: master positions of all particles, (n,) double vectors [m].
         sides: by position in `ranges`, a vector for each particle of a sided range: it is listed only with particles
             on the side to which its vector points, or all round where that is zero. Not for pairs of two such ranges.
+            Behind the last one are `lanes_on(device, dimension)` entries that are none.
     """
 
     def __init__(
@@ -127,14 +149,16 @@ class NeighbourSearch:
         self.builds = 0
         self._launcher = launcher
         self.reach = radius + skin
-        self._kernels = make_cell_kernels(arithmetic, space.periodic)
+        lanes = lanes_on(launcher.device, arithmetic.dimension)
+        self._kernels = make_cell_kernels(arithmetic, space.periodic, lanes)
         particles = sum(count for _, count in ranges)
         self.cells = self._choose_cells(particles)
         self.grid = self._describe_grid()
         buckets = int(np.prod(self.cells))
         self.tables = [CellTable(launcher, first, count, buckets) for first, count in ranges]
-        self.listed_position = wp.zeros(max(particles, 1), dtype=arithmetic.vector, device=launcher.device)
-        self._first_capacity = self._estimate_neighbours(spacing)
+        # The listing loads candidates a few at a time, and so looks beyond the last one.
+        self.listed_position = wp.zeros(particles + lanes, dtype=arithmetic.vector, device=launcher.device)
+        self._first_capacity = first_capacity(self.reach / spacing, arithmetic.dimension)
         self.rows = [
             NeighbourRows(
                 launcher,
@@ -148,7 +172,8 @@ class NeighbourSearch:
         self._sideless = wp.zeros(1, dtype=arithmetic.vector, device=launcher.device)
         if self._sides:
             self._list_kernels = {
-                sided: make_list_kernel(arithmetic, space.periodic, sided) for sided in ("targets", "sources")
+                sided: make_list_kernel(arithmetic, space.periodic, sided, lanes)
+                for sided in ("targets", "sources")
             }
         self._listed = [
             Reordered(launcher, self.listed_position, table, table.first) for table in self.tables
@@ -210,10 +235,13 @@ class NeighbourSearch:
 
     @property
     def bytes(self) -> int:
-        """Memory of lists and cell tables."""
-        lists = sum(rows.index.capacity + rows.ends.capacity for rows in self.rows)
-        tables = sum(t.start.capacity + t.key.capacity + t.order.capacity for t in self.tables)
-        return int(lists + tables + self.listed_position.capacity)
+        """Memory of cell tables and sorting, without the lists."""
+        return sum(table.bytes for table in self.tables) + int(self.listed_position.capacity)
+
+    @property
+    def list_bytes(self) -> int:
+        """Memory of the neighbour lists."""
+        return sum(int(rows.index.capacity + rows.ends.capacity) for rows in self.rows)
 
     def _choose_cells(self, particles: int) -> np.ndarray:
         extent = self.space.high - self.space.low
@@ -237,11 +265,6 @@ class NeighbourSearch:
         grid.cells = arithmetic.integers(*(int(n) for n in self.cells))
         grid.period = arithmetic.vector(*space.period)
         return grid
-
-    def _estimate_neighbours(self, spacing: float) -> int:
-        reach = self.reach / spacing
-        ball = math.pi * reach**2 if self.arithmetic.dimension == 2 else 4.0 / 3.0 * math.pi * reach**3
-        return math.ceil(FIRST_CAPACITY_MARGIN * ball)
 
     def _bind_take(self, table: CellTable, position: wp.array) -> Pass:
         space, point = self.space, self.arithmetic.point
@@ -313,7 +336,7 @@ class NeighbourSearch:
 
 
 class Reordered:
-    """An array that follows the order of a table, in place, with the scratch that this takes.
+    """An array that follows the order of a table, in place.
 
     Args:
         first: index in the array of the table's first particle.
@@ -322,7 +345,7 @@ class Reordered:
     def __init__(self, launcher: Launcher, array: wp.array, table: CellTable, first: int) -> None:
         words = wp.types.type_size_in_bytes(array.dtype) // 4
         size = max(table.count, 1)
-        self._scratch = wp.empty((size, words), dtype=wp.uint32, device=launcher.device)
+        self._scratch = table.spare(words)
         self._own = self._scratch if not table.count else _words_of(array[first : first + size], words)
         self._gather = launcher.bind("sort", gather_words, table.order, self._own, self._scratch)
         self._owner = array  # the words above are a view of its memory

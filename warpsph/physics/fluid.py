@@ -11,6 +11,7 @@ from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
 from warpsph.laws.viscosities import VISCOSITY_LAWS
+from warpsph.particles.launch import lanes_on
 from warpsph.particles.neighbours import NeighbourRows, SearchSpace
 from warpsph.physics.assembly import Assembly, WallRange, WallSurface
 from warpsph.physics.density_gradient import DensityGradient
@@ -28,8 +29,10 @@ BARRIER_STRENGTH = 0.4
 """Largest acceleration by the barrier in units of c0^2 / dp: it stops a particle that comes in at half of c0."""
 
 
-def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_walls: bool) -> FluidOptions:
-    """Return the options that select device code for the scene."""
+def select_code(
+    scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_walls: bool, device: Any
+) -> FluidOptions:
+    """Return the options that select device code for the scene and the Warp device."""
     numerics = scene.numerics
     slips = [solid.slip for solid in scene.boundaries.values()] + [s.slip for s in scene.structures.values()]
     no_slip = "no_slip" in slips
@@ -48,6 +51,7 @@ def select_code(scene: Scene, arithmetic: Arithmetic, space: SearchSpace, has_wa
         wall=numerics.wall.type if has_walls else "none",
         wall_suction=getattr(numerics.wall, "suction", True),
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
+        lanes=lanes_on(device, arithmetic.dimension),
     )
 
 

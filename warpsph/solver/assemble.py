@@ -12,7 +12,7 @@ from warpsph_kernels.arithmetic import Arithmetic
 from warpsph_kernels.clock import CLOCK_SIZE
 
 from warpsph.laws.states import STATE_LAWS
-from warpsph.particles.launch import Launcher
+from warpsph.particles.launch import Launcher, lanes_on
 from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
 from warpsph.physics.assembly import Assembly, WallRange, WallSurface
@@ -130,7 +130,8 @@ def assemble(
     assembly = _shared(scene, sets, sampled, launcher, places)
     layout, arithmetic = assembly.layout, assembly.options.arithmetic
     _fill_state(scene, sets, sampled, assembly)
-    sides = wp.zeros(max(layout.faces, 1), dtype=arithmetic.vector, device=launcher.device)
+    lanes = lanes_on(launcher.device, arithmetic.dimension)
+    sides = wp.zeros(layout.faces + lanes, dtype=arithmetic.vector, device=launcher.device)
     tables = Tables.of(layout)
     search = _make_search(scene, assembly, tables, sides)
     surface = make_wall_surface(arithmetic, _no_slip(scene, sets, sampled), launcher.device)
@@ -176,7 +177,7 @@ def _shared(
     space = search_space(scene, sets)
     driven = largest_speed(scene, sets) + (expected_inflow(scene) if scene.open_boundaries else 0.0)
     sound_speed = choose_sound_speed(scene, sets, driven)
-    options = select_code(scene, arithmetic, space, has_walls=layout.solids > 0)
+    options = select_code(scene, arithmetic, space, layout.solids > 0, launcher.device)
     return Assembly(
         launcher=launcher,
         options=options,

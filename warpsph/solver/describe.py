@@ -6,6 +6,8 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+import warp as wp
+
 from warpsph.particles.state import UNITS, arrays_of
 from warpsph.physics.fluid import smoothing_length, step_viscosity
 from warpsph.scene.schema import Scene
@@ -21,14 +23,16 @@ def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -
     limits = _step_limits(scene, float(parts.assembly.constants.sound_speed))
     particles = sum(count for _, _, count in sets)
     steps = math.ceil(scene.time.end / min(limits.values()))
-    total = sum(field["bytes"] for field in fields) + parts.search.bytes
+    search, lists = parts.search.bytes, parts.search.list_bytes
+    total = sum(field["bytes"] for field in fields) + search + lists
     return {
         "sets": [{"name": name, "kind": kind, "particles": count} for name, kind, count in sets],
         "particles": particles,
         "passes": _passes(parts),
         "pairs": _pairs(parts),
         "fields": fields,
-        "list_bytes": parts.search.bytes,
+        "list_bytes": lists,
+        "search_bytes": search,
         "bytes_per_particle": total / max(particles, 1),
         "sound_speed_m_s": float(parts.assembly.constants.sound_speed),
         "step_limits_s": limits,
@@ -41,8 +45,15 @@ def describe(scene: Scene, parts: Parts, sets: Sequence[tuple[str, str, int]]) -
 def _fields(parts: Parts) -> list[dict[str, Any]]:
     shared = (*arrays_of(parts.assembly.state), *arrays_of(parts.assembly.scratch))
     of_patches = parts.open_boundaries.model.own_arrays if parts.open_boundaries else {}
-    groups = (*shared, *parts.fluid.arrays.items(), *of_patches.items())
+    groups = (*shared, *parts.fluid.arrays.items(), *_wall_arrays(parts).items(), *of_patches.items())
     return [{"name": name, "unit": UNITS[name], "bytes": int(array.capacity)} for name, array in groups]
+
+
+def _wall_arrays(parts: Parts) -> dict[str, wp.array]:
+    if parts.walls is None:
+        return {}
+    model, motion = parts.walls.model, parts.walls.motion
+    return {**model.own_arrays, **motion.own_arrays, "wall_force": model.force}
 
 
 def _passes(parts: Parts) -> list[str]:

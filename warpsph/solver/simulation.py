@@ -17,6 +17,7 @@ from warpsph.scene.schema import Scene
 from warpsph.solver.coupled_system import CoupledSystem
 from warpsph.solver.fluid_system import FluidSystem
 from warpsph.solver.ledger import Ledger
+from warpsph.solver.memory import refuse_what_does_not_fit
 from warpsph.solver.schedule import SAME_TIME, frame_times
 from warpsph.solver.structure_system import StructureSystem
 from warpsph.solver.system import StepReport, System
@@ -46,6 +47,7 @@ class Simulation:
         self._launcher = Launcher(device or default_device(), threads)
         try:
             sets = sample(scene)
+            refuse_what_does_not_fit(scene, sets, self._launcher.device)
             self.system = make_system(scene, sets, self._launcher)
         except SceneError as error:
             raise scene.located(error) from None

@@ -1,0 +1,84 @@
+"""Blocked pair loops: they see every neighbour once, and find the sums of the plain loop."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import warp as wp
+from warpsph_kernels.arithmetic import Arithmetic
+from warpsph_kernels.fluid import make_fluid_kernels
+from warpsph_kernels.lanes import make_lanes
+
+from warpsph.scene import load_scene
+from warpsph.solver.simulation import Simulation
+
+ROUNDING = 2e-5
+"""Of some hundred terms in single precision, relative to the largest sum: their order differs."""
+
+THICK = tuple(f"fluids.{name}.kinematic_viscosity=0.01" for name in ("square", "tall"))
+
+
+@pytest.mark.parametrize(
+    ("dimension", "precision", "count"), [(2, "single", 8), (3, "single", 16), (3, "double", 8)]
+)
+def test_blocks_hold_the_components_of_the_listed_entries(dimension: int, precision: str, count: int) -> None:
+    arithmetic = Arithmetic(dimension, precision)
+    lanes, width = make_lanes(arithmetic, count), dimension + 1
+    entries = np.arange(40.0 * width).reshape(40, width)
+    row = np.random.default_rng(0).integers(5, 45, size=(1, count + 3)).astype(np.int32)
+    first, end = 2, count + 1  # one neighbour less than there are lanes
+
+    @wp.kernel(module=f"test_lanes_{arithmetic.label}_{count}", enable_backward=False)
+    def load(
+        neighbours: wp.array2d(dtype=wp.int32),
+        array: wp.array(dtype=arithmetic.record),
+        out: wp.array(dtype=arithmetic.real),
+    ):
+        index = lanes.take(neighbours, 0, first, end)
+        block = lanes.records(array, index, 5)
+        for k in range(wp.static(count * (dimension + 1))):
+            out[k] = block[k]
+
+    out = wp.zeros(count * width, dtype=arithmetic.real, device="cpu")
+    array = wp.array(entries, dtype=arithmetic.record, device="cpu")
+    wp.launch(load, 1, inputs=[wp.array(row, dtype=wp.int32, device="cpu"), array, out], device="cpu")
+    chosen = [*row[0, first:end], row[0, end - 1]]
+    np.testing.assert_array_equal(out.numpy().reshape(width, count), entries[np.array(chosen) - 5].T)
+
+
+@pytest.mark.parametrize(
+    "overrides",
+    [
+        (),
+        ("numerics.pressure_form=riemann", "numerics.viscosity={type: none}"),
+        ("numerics.viscosity={type: laminar}", "boundaries.left_tank.slip=no_slip", *THICK),
+        ("numerics.wall={type: repulsive}",),
+        ("numerics.precision=double",),
+    ],
+)
+def test_accelerations_do_not_depend_on_the_number_of_lanes(overrides: Sequence[str]) -> None:
+    velocity = 'fluids.square.velocity=["sin(3 * y)", "cos(5 * x)"]'
+    simulation = Simulation(load_scene("dam_break_2d", ["spacing=0.1", velocity, *overrides]), "cpu", 1)
+    for _ in range(3):
+        simulation.step()
+    plain, blocked = (_accelerations(simulation, lanes) for lanes in (1, 8))
+    scale = np.abs(plain).max()
+    assert scale > 1.0
+    np.testing.assert_allclose(blocked, plain, rtol=0.0, atol=ROUNDING * scale)
+
+
+def _accelerations(simulation: Simulation, lanes: int) -> np.ndarray:
+    parts = simulation.system.parts
+    a, rows, walls = parts.assembly, parts.search.rows[0], parts.walls.model.walls
+    kernels = make_fluid_kernels(replace(a.options, lanes=lanes))
+    out = wp.zeros(a.layout.total, dtype=a.options.arithmetic.vector, device="cpu")
+    lists = (rows.index, rows.ends, a.scratch.position_pressure, a.state.velocity_volume)
+    surface = (walls.surface.friction, walls.surface.normal, a.layout.fluids)
+    wp.launch(
+        kernels.accelerate,
+        parts.fluid.count,
+        inputs=[0, a.constants, *lists, *surface, out],
+        device="cpu",
+    )
+    return np.array(out.numpy()[: parts.fluid.count])
