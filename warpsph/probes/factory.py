@@ -15,6 +15,7 @@ from warpsph.probes.reaction import ReactionProbe
 from warpsph.probes.rigid_body import RigidBodyProbe
 from warpsph.probes.rotation import RotationProbe
 from warpsph.probes.structure_energy import StructureEnergyProbe
+from warpsph.probes.voids import VoidsProbe
 from warpsph.probes.volume import VolumeProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
 from warpsph.probes.water_level import WaterLevelProbe
@@ -30,6 +31,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "force": ForceProbe,
     "energy": EnergyProbe,
     "volume": VolumeProbe,
+    "voids": VoidsProbe,
     "displacement": DisplacementProbe,
     "rotation": RotationProbe,
     "reaction": ReactionProbe,
