@@ -10,9 +10,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
-from trials import run_trial, write_table
+from trials import error_text, run_trial, write_table
 
 from warpsph.scene.errors import SceneError
 from warpsph.solver.errors import SimulationDiverged
@@ -84,22 +83,8 @@ def row(scene: str, name: str, overrides: Sequence[str]) -> list[str]:
         return [f"`{scene}`", name, f"refused: {error.problems[0].message}", "-", "-"]
     except SimulationDiverged:
         return [f"`{scene}`", name, "diverged", "-", "-"]
-    errors = ", ".join(_error(reference) for reference in summary["references"])
+    errors = ", ".join(error_text(reference) for reference in summary["references"])
     return [f"`{scene}`", name, errors, str(summary["steps"]["count"]), f"{seconds:.1f}"]
-
-
-def _error(reference: Mapping[str, Any]) -> str:
-    name, error, unit = (
-        reference["quantity"].replace("_", " "),
-        reference["error"],
-        reference.get("error_unit"),
-    )
-    if error is None:
-        return f"{name} -"
-    if unit:
-        return f"{name} holds" if reference["holds"] else f"**{name} does not hold**"
-    text = f"{name} {100.0 * error:.2g} %"
-    return f"**{text}**" if reference["holds"] is False else text
 
 
 def main(scenes: Sequence[str]) -> None:

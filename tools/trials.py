@@ -27,6 +27,21 @@ def run_trial(scene: str, overrides: Sequence[str]) -> tuple[Mapping[str, Any], 
         return summary, time.process_time() - begun
 
 
+def error_text(reference: Mapping[str, Any]) -> str:
+    """Name and error of a compared quantity, bold where its bound does not hold."""
+    name, error, unit = (
+        reference["quantity"].replace("_", " "),
+        reference["error"],
+        reference.get("error_unit"),
+    )
+    if error is None:
+        return f"{name} -"
+    if unit:
+        return f"{name} holds" if reference["holds"] else f"**{name} does not hold**"
+    text = f"{name} {100.0 * error:.2g} %"
+    return f"**{text}**" if reference["holds"] is False else text
+
+
 def write_table(page: Path, columns: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
     """Put a table between the marks of a page."""
     rewrite(page, BEGIN, END, "\n".join(table(columns, rows)))

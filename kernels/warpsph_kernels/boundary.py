@@ -9,11 +9,10 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
-from warpsph_kernels.fluid import FluidOptions, make_pair_force
+from warpsph_kernels.fluid import FluidOptions, make_pair_force, make_pressure
 from warpsph_kernels.lanes import make_lanes
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
-from warpsph_kernels.state import STATES
 from warpsph_kernels.wall_barriers import BARRIERS
 
 
@@ -37,7 +36,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
     pack, unpack = make_packing(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     shape, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
-    state = STATES[options.state].make(arithmetic)
+    pressure_of = make_pressure(options)
     has_viscosity = options.viscosity != "none"
     wall_force = make_pair_force(options, has_viscosity and options.wall_friction)
     barrier = BARRIERS[options.wall](arithmetic) if options.has_barrier else None
@@ -107,6 +106,8 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
                 p_w += wp.dot(c.gravity - acceleration[w], moment) / weight
             if wp.static(not options.wall_suction):
                 p_w = wp.max(p_w, real(0.0))
+            if wp.static(options.tension_cutoff):
+                p_w = wp.max(p_w, c.tension_cutoff)
             if wp.static(options.wall_friction):
                 v_seen = real(2.0) * v_seen - fold(velocities) / weight
         position_pressure[w] = pack(x_w, p_w)
@@ -136,8 +137,7 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         change = real(wp.float64(0.5) * clock[0]) * half_steps * density_rate[w]
         deviation = wp.max(density_deviation[w] + change, real(0.0))
         density_deviation[w] = deviation
-        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
-        position_pressure[w] = pack(unpack(position_pressure[w]), p)
+        position_pressure[w] = pack(unpack(position_pressure[w]), pressure_of(c, deviation))
         if wp.static(options.wall_friction):
             friction[i] = pack(unpack(velocity_volume[w]), friction[i][dim])
 

@@ -49,6 +49,10 @@ class FluidOptions:
     """Where the density comes from: continuity, summation or mixed."""
     kernel_gradient: str = "plain"
     """First derivatives of pressure and velocity: plain, renormalised or finite_particle."""
+    background_pressure: bool = False
+    """Whether every pair repels with a pressure that is added to that of the state."""
+    tension_cutoff: bool = False
+    """Whether the pressure has a lowest value."""
     lanes: int = 1
     """Neighbours that a pair loop takes at a time, see `lanes`."""
 
@@ -98,12 +102,32 @@ def make_pair_force(options: FluidOptions, viscous: bool) -> Any:
     def pair_force(c: constants_type, x_ab: vector, v_ab: vector, u_ab: vector, p_a: real, p_b: real):
         r2 = wp.dot(x_ab, x_ab)
         F = c.slope_norm * slope(wp.sqrt(r2) * c.inverse_h)
-        force = -pressure_term(c, x_ab, u_ab, r2, p_a, p_b) * x_ab
+        pressure = pressure_term(c, x_ab, u_ab, r2, p_a, p_b)
+        if wp.static(options.background_pressure):
+            pressure += real(2.0) * c.background_pressure
+        force = -pressure * x_ab
         if wp.static(viscous):
             force += viscous_term(c, x_ab, v_ab, r2)
         return F * force
 
     return wp.func(pair_force)
+
+
+@cache
+def make_pressure(options: FluidOptions) -> Any:
+    """Return the device function `pressure` [Pa] of a density deviation: the state down to the tension cutoff."""
+    arithmetic = options.arithmetic
+    real = arithmetic.real
+    constants_type = make_constants_struct(arithmetic)
+    state = STATES[options.state].make(arithmetic)
+
+    def pressure(c: constants_type, deviation: real):
+        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
+        if wp.static(options.tension_cutoff):
+            p = wp.max(p, c.tension_cutoff)
+        return p
+
+    return wp.func(pressure)
 
 
 @cache
@@ -118,7 +142,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
-    state = STATES[options.state].make(arithmetic)
+    pressure = make_pressure(options)
     diffusion = DIFFUSIONS[options.density_diffusion](arithmetic)
     has_viscosity = options.viscosity != "none"
     fluid_force = make_pair_force(options, has_viscosity)
@@ -157,8 +181,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         position[i] = x
         density_deviation[i] = deviation
         velocity_volume[i] = pack(v, c.mass / (c.rest_density + deviation))
-        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
-        position_pressure[i] = pack(narrow(x, origin), p)
+        position_pressure[i] = pack(narrow(x, origin), pressure(c, deviation))
 
     @wp.kernel(module=module, enable_backward=False)
     def synchronise(
@@ -175,8 +198,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         i = offset + wp.tid()
         deviation = density_deviation[i]
         x = narrow(position[i], origin)
-        p = state(deviation, c.rest_density, c.sound_speed, c.state_parameters)
-        position_pressure[i] = pack(x, p)
+        position_pressure[i] = pack(x, pressure(c, deviation))
         position_density[i] = pack(x, deviation)
         velocity_volume[i] = pack(unpack(velocity_volume[i]), c.mass / (c.rest_density + deviation))
 

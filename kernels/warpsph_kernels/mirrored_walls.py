@@ -125,6 +125,8 @@ def make_look_into_mirror(options: FluidOptions) -> Any:
                 p_w -= fields[k + 1, 0] * way[k] * c.inverse_h
             if wp.static(not options.wall_suction):
                 p_w = wp.max(p_w, real(0.0))
+            if wp.static(options.tension_cutoff):
+                p_w = wp.max(p_w, c.tension_cutoff)
             if wp.static(options.wall_friction):
                 for k in range(wp.static(dim)):
                     v_seen[k] = real(2.0) * v_w[k] - fields[0, k + 1]

@@ -43,6 +43,8 @@ def make_constants_struct(arithmetic: Arithmetic) -> Any:
         "inverse_spacing",
         "barrier",
         "inverse_barrier_reach",
+        "background_pressure",
+        "tension_cutoff",
     )
     parameters = dict.fromkeys(("state_parameters", "viscosity_parameters"), arithmetic.parameters)
     vectors = {"gravity": vector, "period": vector}

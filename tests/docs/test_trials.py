@@ -4,6 +4,7 @@ from pathlib import Path
 
 import coupling_choices
 import fluid_defaults
+import particle_order
 import pytest
 import trials
 
@@ -39,3 +40,9 @@ def test_a_diverging_run_is_a_row_and_not_the_end_of_the_page() -> None:
     scene = coupling_choices.held_back(1.0, 1e2, "auto", 0.6)
     trial = coupling_choices.measure(scene, coupling_choices.elastic_energy)
     assert trial.end < scene.time.end
+
+
+@pytest.mark.parametrize("scene", particle_order.SCENES)
+def test_every_particle_order_is_one_that_the_scene_can_have(scene: str) -> None:
+    for overrides in particle_order.CHOICES.values():
+        load_scene(scene, [*particle_order.SCENES[scene], *particle_order.FIXED, *overrides])

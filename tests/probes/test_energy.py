@@ -41,3 +41,13 @@ def test_compression_energy_of_a_set_is_weighted_by_mass():
     specific = 0.5 * SOUND_SPEED**2 * strain**2 * (1.0 + 2.0 / 3.0 * strain)
     expected = DENSITY * n * SPACING**2 * specific
     assert energies(water)[2] == pytest.approx(expected, rel=1e-3)
+
+
+def test_fluid_at_the_tension_cutoff_stores_what_its_expansion_takes_from_that_pressure():
+    """Below the cutoff p_c the integral of p / rho^2 is p_c (1/rho_0 - 1/rho), here 20 % expanded at -100 Pa."""
+    cutoff, n = -100.0, 100
+    density, pressure = np.full(n, DENSITY / 1.2), np.full(n, cutoff)
+    water = fluid(lattice([0.0, 0.0], [1.0, 1.0]), density=density, pressure=pressure)
+    scene = scene_with({"type": "energy"}, numerics={"tension_cutoff": cutoff})
+    expected = DENSITY * n * SPACING**2 * cutoff * (1.0 / DENSITY - 1.2 / DENSITY)
+    assert probe_of(scene).evaluate(frame_of(water))[2] == pytest.approx(expected)

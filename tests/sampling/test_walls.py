@@ -139,3 +139,15 @@ def test_a_solid_ball_is_full() -> None:
     inner = inner[np.linalg.norm(inner, axis=1) < 0.7]
     assert cKDTree(positions).query(inner)[0].max() < 1.1 * SPACING
     assert np.linalg.norm(positions, axis=1).max() <= 0.73 - 0.5 * SPACING + 1e-9
+
+
+def test_a_polygon_may_be_open_at_the_faces_of_the_box_around_it():
+    """A vessel that widens: wall above and below along the oblique sides, none at the ends."""
+    corners = [[0.0, 0.4], [1.0, 0.2], [2.0, 0.0], [2.0, 1.2], [0.0, 0.8]]
+    vessel = boundary({"type": "polygon", "points": corners}, open=["x_min", "x_max"])
+    points = wall(vessel)
+    assert points[:, 0].min() > -SPACING / 2
+    assert points[:, 0].max() < 2.0 + SPACING / 2
+    depth = signed_distance(vessel.shape, points)
+    assert depth.min() == pytest.approx(0.5 * SPACING, abs=0.2 * SPACING)
+    assert depth.max() < 3.0 * SPACING

@@ -48,6 +48,8 @@ def select_code(
         particle_order=numerics.particle_order.type,
         density=numerics.density,
         kernel_gradient=numerics.kernel_gradient,
+        background_pressure=numerics.background_pressure > 0.0,
+        tension_cutoff=numerics.tension_cutoff is not None,
         wall=numerics.wall.type if has_walls else "none",
         wall_suction=getattr(numerics.wall, "suction", True),
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
@@ -93,6 +95,8 @@ def fluid_constants(scene: Scene, options: FluidOptions, space: SearchSpace, sou
     c.inverse_spacing = 1.0 / scene.spacing
     c.barrier = BARRIER_STRENGTH * fluid.density * sound_speed**2 / (scene.spacing * volume)
     c.inverse_barrier_reach = 1.0 / (BARRIER_REACH * scene.spacing)
+    c.background_pressure = numerics.background_pressure
+    c.tension_cutoff = numerics.tension_cutoff or 0.0
     c.gravity = arithmetic.vector(*scene.gravity)
     c.period = arithmetic.vector(*space.period)
     return c

@@ -18,6 +18,7 @@ from warpsph.probes.reaction import ReactionProbe
 from warpsph.probes.rigid_body import RigidBodyProbe
 from warpsph.probes.rotation import RotationProbe
 from warpsph.probes.structure_energy import StructureEnergyProbe
+from warpsph.probes.voids import VoidsProbe
 from warpsph.probes.volume import VolumeProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
 from warpsph.probes.water_level import WaterLevelProbe
@@ -35,6 +36,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "force_coefficients": ForceCoefficientsProbe,
     "energy": EnergyProbe,
     "volume": VolumeProbe,
+    "voids": VoidsProbe,
     "displacement": DisplacementProbe,
     "rotation": RotationProbe,
     "reaction": ReactionProbe,

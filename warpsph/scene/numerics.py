@@ -18,7 +18,15 @@ from warpsph.scene.fluid_models import (
     Viscosity,
 )
 from warpsph.scene.structures import StructureNumerics
-from warpsph.scene.types import Flag, KernelName, NonNegativeReal, PositiveReal, Real, SceneModel
+from warpsph.scene.types import (
+    Flag,
+    KernelName,
+    NonNegativeReal,
+    NonPositiveReal,
+    PositiveReal,
+    Real,
+    SceneModel,
+)
 
 
 class DynamicWall(SceneModel):
@@ -84,6 +92,14 @@ class Numerics(SceneModel):
     pressure_form: Literal["symmetric", "riemann"] = "symmetric"
     """Form of the pressure force; riemann: with the dissipation of a Riemann solver and its limiter, after Zhang, Hu &
     Adams (2017), in place of an artificial viscosity. Default: symmetric."""
+
+    background_pressure: NonNegativeReal = 0.0
+    """Pressure by which all pairs, those with walls included, repel beside that of the state [Pa]. It exerts no force
+    on evenly spread particles, and spreads them; it is for fluid that fills its space. Default: 0."""
+
+    tension_cutoff: NonPositiveReal | None = None
+    """Lowest pressure of the fluid, and of walls with suction [Pa]: fluid that is pulled harder parts, and voids open,
+    as in cavitation; null: it holds any tension. Default: null."""
 
     density: Literal["continuity", "summation", "mixed"] = "continuity"
     """Where the density comes from: the continuity equation; a sum over the neighbours, for fluid that fills its space

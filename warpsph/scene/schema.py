@@ -163,8 +163,8 @@ class Boundary(SceneModel):
     """Layers of wall particles [1]; auto: as many as the support radius needs. Default: auto."""
 
     open: tuple[Face, ...] = ()
-    """Faces of a box, or of the box around a mesh, that carry no wall: x_min, x_max, y_min, y_max, z_min, z_max.
-    Default: none."""
+    """Faces of a box, or of the box around a mesh or a polygon, that carry no wall: x_min, x_max, y_min, y_max, z_min,
+    z_max. Default: none."""
 
     slip: Literal["free_slip", "no_slip"] = "free_slip"
     """Tangential condition on the fluid. Default: free_slip."""

@@ -53,6 +53,9 @@ PositiveReal = Annotated[Real, Field(gt=0.0)]
 NonNegativeReal = Annotated[Real, Field(ge=0.0)]
 """A finite number, zero or greater."""
 
+NonPositiveReal = Annotated[Real, Field(le=0.0)]
+"""A finite number, zero or less."""
+
 Integer = Annotated[int, Strict()]
 """A whole number (true and false are not)."""
 

@@ -74,9 +74,11 @@ def _open_face_problems(boundary: Boundary, dimension: int, key: str) -> Iterato
     if not boundary.open:
         return
     faces = [f"{axis}_{end}" for axis in AXES[:dimension] for end in ("min", "max")]
-    if boundary.shape.type not in ("box", "mesh"):
+    if boundary.shape.type not in ("box", "mesh", "polygon"):
         message = f"a {boundary.shape.type} has no faces to open"
-        yield Problem.at(key, message, "open only where shape is a box or a mesh", list(boundary.open))
+        yield Problem.at(
+            key, message, "open only where shape is a box, a mesh or a polygon", list(boundary.open)
+        )
     elif boundary.side == "solid":
         yield Problem.at(key, "a solid has no faces to open", "side: outside or inside", list(boundary.open))
     elif set(boundary.open) >= set(faces):
