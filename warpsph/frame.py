@@ -63,9 +63,9 @@ class SetFrame:
 class Inflow:
     """What has passed an open boundary into the domain; in 2D per metre of depth.
 
-    flux: mass that enters a second [kg/s]; mass: its integral over time [kg], at the rest density; counted_mass: of the
-    particles that have entered less those that have left [kg]; entered, left, removed: particles that have entered the
-    domain from the buffer, left it into the buffer, and left the buffer at its far end.
+    flux: mass that enters a second [kg/s]; mass: its integral over time [kg], both from density and velocity on the
+    patch; counted_mass: of the particles that have entered less those that have left [kg]; entered, left, removed:
+    particles that have entered the domain from the buffer, left it into the buffer, and left the buffer at its far end.
     """
 
     flux: float

@@ -18,10 +18,14 @@ from warpsph_kernels.state import STATES
 
 VELOCITY, PRESSURE, ZERO_GRADIENT, NON_REFLECTING = range(4)
 """Kinds of open boundaries."""
-SMALLEST_DETERMINANT = 1.0e-3
-"""Of the matrix of moments, of order one inside the fluid; below it the mean by the kernel's weights has to do."""
+SMALLEST_COVERAGE = 0.25
+"""Part of the support of a station that fluid fills, from which on more than a mean is fitted."""
+SMALLEST_PIVOT = 1.0e-3
+"""What is left of the mean square of a term that the terms before it do not explain, below which it is left out. With
+lengths in h it is about 0.2 for linear terms inside of a fluid, and 0.01 for a quadratic one beside a wall."""
 NEWTON_STEPS = 4
-"""From a pressure to its density: the first guess is off by a few per cent, and each step squares the error."""
+"""From a pressure to its density: the first guess is off by a few per cent, and each step squares the error. What is
+out of all range is left to what stops such a run."""
 
 
 class OpenBoundaryKernels(NamedTuple):
@@ -90,15 +94,56 @@ def make_across(options: FluidOptions) -> Any:
     return wp.func(across)
 
 
+def _fit_types(options: FluidOptions) -> tuple[Any, Any]:
+    """Matrix of the moments of a fit, and of its right-hand sides: a column for the pressure and each velocity."""
+    arithmetic = options.arithmetic
+    terms, fields = (4, 3) if arithmetic.dimension == 2 else (7, 4)
+    return (
+        wp.types.matrix((terms, terms), arithmetic.real),
+        wp.types.matrix((terms, fields), arithmetic.real),
+    )
+
+
+@cache
+def make_fit(options: FluidOptions) -> Any:
+    """Return the device function `fit(moments, right) -> coefficients` of least squares: Gaussian elimination of a
+    symmetric positive matrix, in which terms that the particles do not determine are left out."""
+    real = options.arithmetic.real
+    system, columns = _fit_types(options)
+    terms, fields = columns._shape_
+
+    def fit(moments: system, right: columns):
+        smallest = real(wp.static(SMALLEST_PIVOT)) * moments[0, 0]
+        solved = columns()
+        for k in range(wp.static(terms)):
+            if moments[k, k] > smallest:
+                for j in range(k + 1, wp.static(terms)):
+                    factor = moments[j, k] / moments[k, k]
+                    for m in range(k, wp.static(terms)):
+                        moments[j, m] = moments[j, m] - factor * moments[k, m]
+                    for f in range(wp.static(fields)):
+                        right[j, f] = right[j, f] - factor * right[k, f]
+        for back in range(wp.static(terms)):
+            k = wp.static(terms - 1) - back
+            if moments[k, k] > smallest:
+                for f in range(wp.static(fields)):
+                    rest = right[k, f]
+                    for m in range(k + 1, wp.static(terms)):
+                        rest -= moments[k, m] * solved[m, f]
+                    solved[k, f] = rest / moments[k, k]
+        return solved
+
+    return wp.func(fit)
+
+
 @cache
 def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     """Return the kernels of open boundaries specialised for the options."""
     arithmetic = options.arithmetic
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
     record = arithmetic.record
-    unknowns = dim + 1
-    system = wp.types.matrix((unknowns, unknowns), real)
-    column = wp.types.vector(unknowns, real)
+    terms = 4 if dim == 2 else 7
+    column = wp.types.vector(terms, real)
     pair, counts_type = wp.types.vector(2, real), wp.types.vector(2, wp.int32)
     patch_type = make_patch_struct(options)
     constants_type, grid_type = make_constants_struct(arithmetic), make_grid_struct(arithmetic)
@@ -108,6 +153,8 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     wrap, cell_of, row_base = make_cell_functions(arithmetic)
     state = STATES[options.state].make(arithmetic)
     stiffening = STATES[options.state].make_stiffening(arithmetic)
+    fit = make_fit(options)
+    system, columns = _fit_types(options)
     rows = 3 ** (dim - 1)
     across = make_across(options)
     module = options.module_of("open_boundary")
@@ -119,7 +166,25 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
             excess = state(deviation, c.rest_density, c.sound_speed, c.state_parameters) - p
             slope = stiffening(deviation, c.rest_density, c.sound_speed, c.state_parameters)
             deviation -= excess / (c.sound_speed * c.sound_speed * slope)
+            deviation = wp.clamp(deviation, real(-0.9) * c.rest_density, real(0.9) * c.rest_density)
         return deviation
+
+    @wp.func
+    def basis_of(patch: patch_type, y: vector):
+        """1, n, s, s^2; in three dimensions 1, n, s, t, s^2, t^2, s t; of a way y over h."""
+        basis = column()
+        basis[0] = real(1.0)
+        basis[1] = wp.dot(y, patch.normal)
+        s = across(patch, y)
+        basis[2] = s[0]
+        if wp.static(dim == 2):
+            basis[3] = s[0] * s[0]
+        else:
+            basis[3] = s[1]
+            basis[4] = s[0] * s[0]
+            basis[wp.static(terms - 2)] = s[1] * s[1]
+            basis[wp.static(terms - 1)] = s[0] * s[1]
+        return basis
 
     @wp.kernel(module=module, enable_backward=False)
     def find_inside(
@@ -138,16 +203,17 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     ):
         """One station: velocity and pressure of the fluid inside, the pressure carried on to the patch.
 
-        `place` lies one smoothing length inside. There a linear polynomial is fitted to the particles of the domain,
-        without those of buffers, by least squares with the weights V_b W_b (moving least squares, Lancaster &
-        Salkauskas 1981): exact for linear fields. `slope` is dp/dn. The cells are those of the last lists: no particle
-        has moved more than half the skin since.
+        `place` lies one smoothing length inside. There a polynomial, linear along the normal and quadratic across it,
+        is fitted to the particles of the domain, without those of buffers, by least squares with the weights V_b W_b
+        (moving least squares, Lancaster & Salkauskas 1981): exact for the parabola of a channel, which a linear one
+        would make lower, and what enters would brake the flow. `slope` is dp/dn. The cells are those of the last lists:
+        no particle has moved more than half the skin since.
         """
         i = offset + wp.tid()
         x_g = place[i]
-        left = system()
-        pressures = column()
-        velocities = wp.matrix(shape=(wp.static(unknowns), wp.static(dim)), dtype=real)
+        patch = patches[patch_of[i]]
+        moments = system()
+        right = columns()
         cell = cell_of(x_g, grid)
         for row in range(wp.static(rows)):
             base = row_base(cell, row, grid)
@@ -156,34 +222,30 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
                 for b in range(start[bucket], start[bucket + 1]):
                     if tag[b] < 0:
                         xp_b = position_pressure[b]
-                        x_bg = -separation(x_g, unpack(xp_b), c.period)
+                        x_bg = -separation(x_g, unpack(xp_b), c.period) * c.inverse_h
                         vV_b = velocity_volume[b]
-                        weight = vV_b[wp.static(dim)] * c.norm * shape(wp.length(x_bg) * c.inverse_h)
+                        weight = vV_b[wp.static(dim)] * c.norm * shape(wp.length(x_bg))
                         if weight > real(0.0):
-                            basis = column()
-                            basis[0] = real(1.0)
+                            basis = basis_of(patch, x_bg)
+                            values = record()
                             for k in range(wp.static(dim)):
-                                basis[k + 1] = x_bg[k] * c.inverse_h
-                            left += weight * wp.outer(basis, basis)
-                            pressures += weight * xp_b[wp.static(dim)] * basis
-                            velocities += weight * wp.outer(basis, unpack(vV_b))
-        v, p, dp = vector(), real(0.0), real(0.0)
+                                values[k] = vV_b[k]
+                            values[wp.static(dim)] = xp_b[wp.static(dim)]
+                            moments += weight * wp.outer(basis, basis)
+                            right += weight * wp.outer(basis, values)
+        found = record()
+        dp = real(0.0)
         # A neighbour at the rim of the support has no weight in single precision: there is nothing to fit.
-        if left[0, 0] > real(1.0e-6):
-            p = pressures[0] / left[0, 0]
-            for k in range(wp.static(dim)):
-                v[k] = velocities[0, k] / left[0, 0]
-            # Second moments of the kernel are of the order of a tenth of h^2.
-            if wp.determinant(left) > real(wp.static(SMALLEST_DETERMINANT * 0.2**dim)):
-                inverse = wp.inverse(left)
-                solved = inverse * pressures
-                flow = inverse * velocities
-                p = solved[0]
-                for k in range(wp.static(dim)):
-                    v[k] = flow[0, k]
-                    dp += solved[k + 1] * c.inverse_h * patches[patch_of[i]].normal[k]
-                p -= dp * c.smoothing_length
-        inside[i] = pack(v, p)
+        if moments[0, 0] > real(wp.static(SMALLEST_COVERAGE)):
+            solved = fit(moments, right)
+            for k in range(wp.static(dim + 1)):
+                found[k] = solved[0, k]
+            dp = solved[1, wp.static(dim)] * c.inverse_h
+            found[wp.static(dim)] = found[wp.static(dim)] - dp * c.smoothing_length
+        elif moments[0, 0] > real(1.0e-6):
+            for k in range(wp.static(dim + 1)):
+                found[k] = right[0, k] / moments[0, 0]
+        inside[i] = found
         slope[i] = dp
 
     @wp.kernel(module=module, enable_backward=False)
@@ -261,14 +323,15 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         flux: wp.array(dtype=wp.float64),
         mass: wp.array(dtype=wp.float64),
     ):
-        """One patch: mass that enters a second at the rest density [kg/s], and its integral over time [kg]."""
+        """One patch: mass that enters a second [kg/s], the sum of rho u . n over its area, and its integral [kg]."""
         k = offset + wp.tid()
         patch = patches[k]
         total = wp.float64(0.0)
         for j in range(patch.counts[0] * patch.counts[1]):
             i = patch.first_station + j
-            total += wp.float64(weight[i] * wp.dot(unpack(imposed[i]), patch.normal))
-        flux[k] = wp.float64(c.rest_density) * total
+            density = c.rest_density + deviation_of(imposed[i][wp.static(dim)], c)
+            total += wp.float64(density * weight[i] * wp.dot(unpack(imposed[i]), patch.normal))
+        flux[k] = total
         mass[k] = mass[k] + clock[0] * flux[k]
 
     @wp.kernel(module=module, enable_backward=False)

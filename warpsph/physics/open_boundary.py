@@ -42,7 +42,7 @@ class OpenBoundaryModel:
 
     tag: (places,) index of the patch in whose buffer a fluid particle is, else -1; undisturbed: (stations,) running
     mean of the velocity at non-reflecting patches [m/s]; flux, mass: (patches,) mass that enters a second [kg/s] and
-    its integral [kg], at the rest density; in 2D per metre of depth.
+    its integral [kg]; in 2D per metre of depth.
     """
 
     def __init__(self, scene: Scene, assembly: Assembly, search: NeighbourSearch, fluid: FluidModel) -> None:

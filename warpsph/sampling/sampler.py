@@ -53,10 +53,10 @@ def sample(scene: Scene) -> tuple[SampledSet, ...]:
     structures = {name: filled[name].position for name in scene.structures}
     walls = _clear_of_clamps(scene, _joined_walls(scene, layers), structures)
     cells = with_buffers(scene, {name: filled[name].position for name in scene.fluids}, lattices)
+    _refuse(buffer_problems(scene, cells, walls))
     _refuse(wall_conflict_problems(scene, cells, walls))
     _refuse(structure_conflict_problems(scene, cells, walls, structures))
     fluids = {name: _clear_of_walls(scene, points, walls, structures) for name, points in cells.items()}
-    _refuse(buffer_problems(scene, fluids, walls))
     kinds = {"fluids": fluids, "boundaries": walls, "structures": structures}
     _refuse([problem for kind, sets in kinds.items() for problem in empty_problems(kind, sets)])
     _refuse(overlap_problems("fluids", fluids, scene.spacing))

@@ -371,12 +371,13 @@ class MomentumProbe(_Probe):
 
 
 class FluxProbe(_Probe):
-    """What passes an open boundary into the domain: mass a second and its integral, from the velocity on the patch at
-    the rest density, and the mass of the particles that have entered less that of those that have left."""
+    """What passes an open boundary into the domain, or all of them together: mass a second and its integral, from
+    density and velocity on the patch, and the mass of the particles that have entered less that of those that
+    have left."""
 
     type: Literal["flux"] = "flux"
-    patch: Name
-    """Name of the open boundary."""
+    patch: Name | None = None
+    """Name of the open boundary; null: all. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
         unit = "kg/m" if dimension == 2 else "kg"

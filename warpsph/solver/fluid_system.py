@@ -238,7 +238,8 @@ class FluidSystem:
 
     def _evolving_arrays(self) -> Iterator[tuple[str, wp.array]]:
         yield from arrays_of(self.parts.assembly.state)
-        yield "listed_position", self.parts.search.listed_position
+        # Behind the last particle are entries that are none.
+        yield "listed_position", self.parts.search.listed_position[: self.parts.assembly.layout.total]
         yield from self.parts.fluid.own_arrays.items()
         if self.parts.open_boundaries:
             yield from self.parts.open_boundaries.model.own_arrays.items()

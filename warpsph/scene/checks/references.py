@@ -65,10 +65,18 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
-        if isinstance(probe, FluxProbe) and probe.patch not in names.open_boundaries:
-            yield unknown_name(f"{key}.patch", "open boundary", probe.patch, names.open_boundaries)
+        if isinstance(probe, FluxProbe):
+            yield from _flux_problems(probe, names, key)
         if isinstance(probe, PointProbe | LineProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
+
+
+def _flux_problems(probe: FluxProbe, names: DeclaredNames, key: str) -> Iterator[Problem]:
+    if not names.open_boundaries:
+        message = "nothing passes where the scene has no open boundary"
+        yield Problem.at(f"{key}.type", message, "a scene with open_boundaries, or another probe", probe.type)
+    elif probe.patch is not None and probe.patch not in names.open_boundaries:
+        yield unknown_name(f"{key}.patch", "open boundary", probe.patch, names.open_boundaries)
 
 
 def _clamp_problems(probe: Probe, scene: Scene, key: str) -> Iterator[Problem]:
