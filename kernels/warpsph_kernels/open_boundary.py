@@ -11,6 +11,7 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.cells import make_cell_functions, make_grid_struct
+from warpsph_kernels.channel_fit import fit_types, make_fit
 from warpsph_kernels.fluid import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
@@ -20,9 +21,6 @@ VELOCITY, PRESSURE, ZERO_GRADIENT, NON_REFLECTING = range(4)
 """Kinds of open boundaries."""
 SMALLEST_COVERAGE = 0.25
 """Part of the support of a station that fluid fills, from which on more than a mean is fitted."""
-SMALLEST_PIVOT = 1.0e-3
-"""What is left of the mean square of a term that the terms before it do not explain, below which it is left out. With
-lengths in h it is about 0.2 for linear terms inside of a fluid, and 0.01 for a quadratic one beside a wall."""
 NEWTON_STEPS = 4
 """From a pressure to its density: the first guess is off by a few per cent, and each step squares the error. What is
 out of all range is left to what stops such a run."""
@@ -94,48 +92,6 @@ def make_across(options: FluidOptions) -> Any:
     return wp.func(across)
 
 
-def _fit_types(options: FluidOptions) -> tuple[Any, Any]:
-    """Matrix of the moments of a fit, and of its right-hand sides: a column for the pressure and each velocity."""
-    arithmetic = options.arithmetic
-    terms, fields = (4, 3) if arithmetic.dimension == 2 else (7, 4)
-    return (
-        wp.types.matrix((terms, terms), arithmetic.real),
-        wp.types.matrix((terms, fields), arithmetic.real),
-    )
-
-
-@cache
-def make_fit(options: FluidOptions) -> Any:
-    """Return the device function `fit(moments, right) -> coefficients` of least squares: Gaussian elimination of a
-    symmetric positive matrix, in which terms that the particles do not determine are left out."""
-    real = options.arithmetic.real
-    system, columns = _fit_types(options)
-    terms, fields = columns._shape_
-
-    def fit(moments: system, right: columns):
-        smallest = real(wp.static(SMALLEST_PIVOT)) * moments[0, 0]
-        solved = columns()
-        for k in range(wp.static(terms)):
-            if moments[k, k] > smallest:
-                for j in range(k + 1, wp.static(terms)):
-                    factor = moments[j, k] / moments[k, k]
-                    for m in range(k, wp.static(terms)):
-                        moments[j, m] = moments[j, m] - factor * moments[k, m]
-                    for f in range(wp.static(fields)):
-                        right[j, f] = right[j, f] - factor * right[k, f]
-        for back in range(wp.static(terms)):
-            k = wp.static(terms - 1) - back
-            if moments[k, k] > smallest:
-                for f in range(wp.static(fields)):
-                    rest = right[k, f]
-                    for m in range(k + 1, wp.static(terms)):
-                        rest -= moments[k, m] * solved[m, f]
-                    solved[k, f] = rest / moments[k, k]
-        return solved
-
-    return wp.func(fit)
-
-
 @cache
 def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     """Return the kernels of open boundaries specialised for the options."""
@@ -153,8 +109,8 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     wrap, cell_of, row_base = make_cell_functions(arithmetic)
     state = STATES[options.state].make(arithmetic)
     stiffening = STATES[options.state].make_stiffening(arithmetic)
-    fit = make_fit(options)
-    system, columns = _fit_types(options)
+    fit = make_fit(arithmetic)
+    system, columns = fit_types(arithmetic)
     rows = 3 ** (dim - 1)
     across = make_across(options)
     module = options.module_of("open_boundary")

@@ -12,6 +12,7 @@ import h5py
 import numpy as np
 import pytest
 from builders import still_tank
+from open_boundary_builders import channel
 from pxr import Usd, UsdGeom
 
 from warpsph.output.checkpoint import CheckpointError, read_checkpoint
@@ -213,3 +214,13 @@ def test_a_checkpoint_from_after_the_end_is_refused(tmp_path):
     run_scene(sloshing(end=0.2), tmp_path, device="cpu")
     with pytest.raises(CheckpointError, match=r"it is of t = 0\.2 s, after time\.end = 0\.1 s"):
         run_scene(sloshing(end=0.1), tmp_path, device="cpu", resume=True)
+
+
+def test_probes_that_need_no_field_of_particles_are_written(tmp_path: Path) -> None:
+    """What passes an open boundary is no field; its rows are written all the same."""
+    scene = channel(
+        time={"end": 0.2, "frame_rate": 10.0}, probes={"flux": {"type": "flux", "patch": "inlet"}}
+    )
+    run_scene(scene, out=tmp_path, device="cpu")
+    rows = (tmp_path / "probes.csv").read_text().splitlines()
+    assert len(rows) == 1 + 3

@@ -4,9 +4,9 @@ import numpy as np
 
 from warpsph.frame import Frame, SetFrame
 from warpsph.probes.probe import Probe
-from warpsph.scene.probes import STRUCTURE_ENERGIES
 from warpsph.scene.probes import StructureEnergyProbe as StructureEnergySpec
 from warpsph.scene.schema import Scene
+from warpsph.scene.structure_probes import STRUCTURE_ENERGIES
 
 PARTICLE_ENERGIES = {
     "strain": "strain_energy",

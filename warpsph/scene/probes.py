@@ -9,35 +9,21 @@ from typing import Annotated, Literal
 
 from pydantic import Field
 
+from warpsph.scene.probe_model import ProbeModel, force_columns
 from warpsph.scene.shapes import Bounds
-from warpsph.scene.types import AXES, Axis, Integer, Name, PositiveReal, Real, SceneModel, Vector
-
-STRUCTURE_ENERGIES = (
-    "kinetic",
-    "strain",
-    "hourglass",
-    "contact",
-    "dissipated",
-    "work",
-    "potential",
-    "total",
-    "drift",
+from warpsph.scene.structure_probes import (
+    DisplacementProbe,
+    ReactionProbe,
+    RigidBodyProbe,
+    RotationProbe,
+    StructureEnergyProbe,
 )
-"""Columns of the energies of structures."""
+from warpsph.scene.types import AXES, Axis, Integer, Name, PositiveReal, Real, Vector
+
 PointField = Literal["pressure", "velocity", "density"]
 
 
-class _Probe(SceneModel):
-    def quantities(self, dimension: int) -> tuple[str, ...]:
-        """Column names without the probe's own, in a scene of that dimension."""
-        raise NotImplementedError
-
-    def columns(self, name: str, dimension: int) -> tuple[str, ...]:
-        """Columns that a probe of that name writes, such as front.position[m]."""
-        return tuple(f"{name}.{quantity}" for quantity in self.quantities(dimension))
-
-
-class FrontProbe(_Probe):
+class FrontProbe(ProbeModel):
     """Largest coordinate that fluid has reached along an axis."""
 
     type: Literal["front"] = "front"
@@ -54,7 +40,7 @@ class FrontProbe(_Probe):
         return ("position[m]",)
 
 
-class ReachProbe(_Probe):
+class ReachProbe(ProbeModel):
     """Largest distance of fluid from a point, half the diagonal of a particle's cell included."""
 
     type: Literal["reach"] = "reach"
@@ -68,7 +54,7 @@ class ReachProbe(_Probe):
         return ("radius[m]",)
 
 
-class WaterLevelProbe(_Probe):
+class WaterLevelProbe(ProbeModel):
     """Height of the free surface at a vertical gauge."""
 
     type: Literal["water_level"] = "water_level"
@@ -82,7 +68,7 @@ class WaterLevelProbe(_Probe):
         return ("level[m]",)
 
 
-class _OnSolid(_Probe):
+class _OnSolid(ProbeModel):
     """A probe on one boundary or on one structure; the scene gives one of the two."""
 
     boundary: Name | None = None
@@ -115,7 +101,7 @@ class WallPressureProbe(_OnSolid):
         return ("pressure[Pa]",)
 
 
-class PointProbe(_Probe):
+class PointProbe(ProbeModel):
     """Fluid fields at a fixed point, by consistent interpolation."""
 
     type: Literal["point"] = "point"
@@ -134,7 +120,7 @@ class PointProbe(_Probe):
         return tuple(column for field in self.fields for column in columns[field])
 
 
-class LineProbe(_Probe):
+class LineProbe(ProbeModel):
     """Fluid fields at evenly spaced points of a line, numbered from 0: velocity_x_0, velocity_x_1 and so on."""
 
     type: Literal["line"] = "line"
@@ -171,10 +157,10 @@ class ForceProbe(_OnSolid):
     """Point about which the torque is taken [m]; null: the centre of mass at the start. Default: null."""
 
     def quantities(self, dimension: int) -> tuple[str, ...]:
-        return _force_columns(dimension)
+        return force_columns(dimension)
 
 
-class ForceCoefficientsProbe(_Probe):
+class ForceCoefficientsProbe(ProbeModel):
     """Drag, lift and moment of the fluid on walls and structures together.
 
     A force has the coefficient c = 2 F / (rho U^2 L), in space over the span as well: 2 F / (rho U^2 L b); a moment has
@@ -220,7 +206,7 @@ class ForceCoefficientsProbe(_Probe):
         return (*(f"{name}[1]" for name in coefficients), f"drag_force[{unit}]", f"lift_force[{unit}]")
 
 
-class EnergyProbe(_Probe):
+class EnergyProbe(ProbeModel):
     """Energies of all fluids together."""
 
     type: Literal["energy"] = "energy"
@@ -230,7 +216,7 @@ class EnergyProbe(_Probe):
         return tuple(f"{energy}[{unit}]" for energy in ("kinetic", "potential", "compression"))
 
 
-class VolumeProbe(_Probe):
+class VolumeProbe(ProbeModel):
     """Volume (sum of m/rho) and number of particles of all fluids, and how many are gone since the start: through the
     kill box or, where a region is given, out of it."""
 
@@ -242,7 +228,7 @@ class VolumeProbe(_Probe):
         return (f"volume[m{dimension}]", "particles[1]", "removed[1]")
 
 
-class VoidsProbe(_Probe):
+class VoidsProbe(ProbeModel):
     """Voids in fluid that fills its space: the radius of the largest ball beside fluid in which there is no particle
     of any kind, over the spacing, and the volume of all voids.
 
@@ -261,99 +247,7 @@ class VoidsProbe(_Probe):
         return ("radius[1]", f"volume[m{dimension}]")
 
 
-class DisplacementProbe(_Probe):
-    """Displacement and velocity of a material point of a structure, by first-order consistent interpolation."""
-
-    type: Literal["displacement"] = "displacement"
-    structure: Name
-    """The structure."""
-
-    at: Vector
-    """Where the point is at rest [m]; in the structure or on its surface."""
-
-    frame: Name | None = None
-    """Clamp of the structure with which the frame of reference moves and turns; null: one at rest. Default: null."""
-
-    def quantities(self, dimension: int) -> tuple[str, ...]:
-        shifts = tuple(f"displacement_{axis}[m]" for axis in AXES[:dimension])
-        return shifts + tuple(f"velocity_{axis}[m/s]" for axis in AXES[:dimension])
-
-
-class RotationProbe(_Probe):
-    """Angle by which a material point of a structure has turned about an axis, right-handed, from -pi to pi."""
-
-    type: Literal["rotation"] = "rotation"
-    structure: Name
-    """The structure."""
-
-    at: Vector
-    """Where the point is at rest [m]; in the structure or on its surface, and not on the axis."""
-
-    about: Vector
-    """A point of the axis [m]."""
-
-    axis: Axis = "z"
-    """Direction of the axis; z in two dimensions. Default: z."""
-
-    def quantities(self, dimension: int) -> tuple[str, ...]:
-        return ("angle[rad]",)
-
-
-class ReactionProbe(_Probe):
-    """Force and torque of a clamp on its structure."""
-
-    type: Literal["reaction"] = "reaction"
-    structure: Name
-    """The structure."""
-
-    clamp: Name
-    """Name of its clamp."""
-
-    about: Vector | None = None
-    """Point about which the torque is taken [m]; null: the centre of the clamped particles at rest. Default: null."""
-
-    def quantities(self, dimension: int) -> tuple[str, ...]:
-        return _force_columns(dimension)
-
-
-class RigidBodyProbe(_Probe):
-    """Motion of a rigid body, and the force and torque of all that acts on it but what holds its axes.
-
-    Position and velocity are those of its centre of mass, and so is the torque about it. The angle is the integral of
-    the angular velocity: in the plane it counts turns, in space each component is that of an axis fixed in space.
-    """
-
-    type: Literal["rigid_body"] = "rigid_body"
-    structure: Name
-    """The structure, which has to be rigid."""
-
-    def quantities(self, dimension: int) -> tuple[str, ...]:
-        axes, about = AXES[:dimension], AXES if dimension == 3 else ("z",)
-        place = tuple(f"position_{axis}[m]" for axis in axes)
-        place += tuple(f"velocity_{axis}[m/s]" for axis in axes)
-        turn = tuple(f"angle_{axis}[rad]" for axis in about)
-        turn += tuple(f"angular_velocity_{axis}[rad/s]" for axis in about)
-        return place + turn + _force_columns(dimension)
-
-
-class StructureEnergyProbe(_Probe):
-    """Energies of structures.
-
-    `work` has been done by loads and moving clamps, `dissipated` has been lost to damping and friction; `potential`
-    is that of gravity, zero at rest. `total` = kinetic + strain + hourglass + contact + potential + dissipated - work:
-    it keeps its value where energy is conserved, and `drift` is how far it has come from that at the start.
-    """
-
-    type: Literal["structure_energy"] = "structure_energy"
-    structure: Name | None = None
-    """One structure only; null: all. Default: null."""
-
-    def quantities(self, dimension: int) -> tuple[str, ...]:
-        unit = "J/m" if dimension == 2 else "J"
-        return tuple(f"{energy}[{unit}]" for energy in STRUCTURE_ENERGIES)
-
-
-class MomentumProbe(_Probe):
+class MomentumProbe(ProbeModel):
     """Momentum and angular momentum about the origin: of everything that flows or moves, or of what is named."""
 
     type: Literal["momentum"] = "momentum"
@@ -370,7 +264,7 @@ class MomentumProbe(_Probe):
         return linear + tuple(f"angular_momentum_{axis}[kg m2/s]" for axis in AXES)
 
 
-class FluxProbe(_Probe):
+class FluxProbe(ProbeModel):
     """What passes an open boundary into the domain, or all of them together: mass a second and its integral, from
     density and velocity on the patch, and the mass of the particles that have entered less that of those that
     have left."""
@@ -383,12 +277,6 @@ class FluxProbe(_Probe):
         unit = "kg/m" if dimension == 2 else "kg"
         rate = "kg/(m s)" if dimension == 2 else "kg/s"
         return (f"flux[{rate}]", f"mass[{unit}]", f"counted_mass[{unit}]")
-
-
-def _force_columns(dimension: int) -> tuple[str, ...]:
-    if dimension == 2:
-        return ("force_x[N/m]", "force_y[N/m]", "torque_z[N m/m]")
-    return tuple(f"force_{axis}[N]" for axis in AXES) + tuple(f"torque_{axis}[N m]" for axis in AXES)
 
 
 Probe = Annotated[

@@ -161,7 +161,7 @@ class _Run:
         return True
 
     def _write(self, stop: Stop) -> None:
-        if stop.probes and self._probe_fields:
+        if stop.probes and (self._probes or self._probe_fields):
             self._write_probes()
         if stop.frame is None:
             return
