@@ -12,7 +12,7 @@ import pytest
 from typer.testing import CliRunner, Result
 
 from warpsph.benchmark.cases import FULL, QUICK, BenchmarkCase
-from warpsph.benchmark.guard import losses, read_rows
+from warpsph.benchmark.guard import losses, read_rows, strangers
 from warpsph.benchmark.measure import Block, speeds
 from warpsph.benchmark.yardsticks import PlainSum, memory_bandwidth
 from warpsph.cli.app import app
@@ -72,6 +72,14 @@ def row(ratio: float, **changes: Any) -> dict[str, Any]:
 @pytest.mark.parametrize(("ratio", "lost"), [(2.0, False), (1.41, False), (1.39, True)])
 def test_the_guard_finds_a_loss_of_more_than_thirty_per_cent(ratio: float, lost: bool) -> None:
     assert bool(losses([row(ratio)], [row(2.0)])) is lost
+
+
+def test_the_guard_does_not_judge_what_was_recorded_on_another_processor() -> None:
+    here = {"case": "a", "moving_particles": 1, "threads": 1, "ratio_to_plain_sum": 1.0, "machine": "here"}
+    there = here | {"ratio_to_plain_sum": 9.0, "machine": "there"}
+    assert losses([here], [there]) == []
+    assert strangers([here], [there]) == ["a: recorded on there, not judged on here"]
+    assert strangers([here], [here]) == []
 
 
 def test_the_guard_misses_no_case_without_a_record() -> None:

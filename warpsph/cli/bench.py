@@ -59,7 +59,7 @@ def bench(
     older, recorded = _rows_of("--compare", compare), _rows_of("--guard", guard)
     start_warp(device, verbose=verbose)
     chosen = _chosen(cases, quick, device)
-    from warpsph.benchmark.guard import losses
+    from warpsph.benchmark.guard import losses, strangers
     from warpsph.benchmark.measure import QUICK, THOROUGH, measure
 
     rows = []
@@ -72,7 +72,7 @@ def bench(
     if older and not json_lines:
         _show_changes(rows, older)
     lost = losses(rows, recorded) if guard else []
-    for sentence in lost:
+    for sentence in (*lost, *strangers(rows, recorded)):
         print(sentence)
     return ExitCode.FAILED if lost else ExitCode.OK
 
