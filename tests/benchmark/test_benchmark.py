@@ -75,10 +75,9 @@ def test_the_guard_finds_a_loss_of_more_than_thirty_per_cent(ratio: float, lost:
 
 
 def test_the_guard_does_not_judge_what_was_recorded_on_another_processor() -> None:
-    here = {"case": "a", "moving_particles": 1, "threads": 1, "ratio_to_plain_sum": 1.0, "machine": "here"}
-    there = here | {"ratio_to_plain_sum": 9.0, "machine": "there"}
+    here, there = row(1.0, machine="here"), row(9.0, machine="there")
     assert losses([here], [there]) == []
-    assert strangers([here], [there]) == ["a: recorded on there, not judged on here"]
+    assert strangers([here], [there]) == ["fluid_2d: recorded on there, not judged on here"]
     assert strangers([here], [here]) == []
 
 

@@ -1,7 +1,7 @@
 """A guard against lost speed: ratios to the plain sum, recorded once and compared at every change.
 
-Ratios carry over from one machine to another better than seconds do, and yet not fully: vector units differ. So a ratio is
-held only against one recorded on a processor of the same name.
+Ratios carry over from one machine to another better than seconds do, and yet not fully: vector units differ. So a ratio
+is held only against one recorded on a processor of the same name.
 """
 
 from __future__ import annotations
