@@ -56,6 +56,12 @@ def test_any_text_and_number_survives_the_round_trip(
     assert scene_from_yaml(scene.to_yaml()) == scene
 
 
+@pytest.mark.parametrize("text", ["\x85", "a\x85b", "a: \u2028", "\u2029 b\n"])
+def test_rare_line_breaks_survive_the_round_trip(text: str) -> None:
+    scene = scene_of(description=text)
+    assert scene_from_yaml(scene.to_yaml()) == scene
+
+
 def test_numbers_of_numpy_are_written_as_numbers() -> None:
     scene = scene_of(spacing=np.float64(0.05), gravity=np.array([0.0, -9.81]).tolist())
     assert scene_from_yaml(scene.to_yaml()) == scene

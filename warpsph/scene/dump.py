@@ -10,10 +10,13 @@ from typing import Any
 from ruamel.yaml import YAML
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.representer import RoundTripRepresenter
+from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
 from warpsph.scene.types import SceneModel
 
 _WIDTH = 110
+_RARE_BREAKS = "\x85\u2028\u2029"
+"""Line breaks that only double quotes keep: within single ones they are folded to a blank."""
 
 
 class _Representer(RoundTripRepresenter):
@@ -66,4 +69,6 @@ def _styled(data: Any) -> Any:
         return items
     if isinstance(data, float):
         return float(data)
+    if isinstance(data, str) and any(mark in data for mark in _RARE_BREAKS):
+        return DoubleQuotedScalarString(data)
     return data
