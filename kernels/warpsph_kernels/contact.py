@@ -1,6 +1,7 @@
 """Kernels of contact: structures against structures, themselves and rigid walls, on current positions.
 
-Contact particles are the surface particles of structures, then those of walls, in an index space of their own. Each
+Contact particles are the surface particles of structures, then those of walls, in an index space of their own. `near`
+lists those of structures, then those of walls that a structure may come to soon: all others feel nothing. Each
 feels how much of foreign bodies is near it, as a sum over foreign surface particles b,
 
     c_a = sum_b W^_ab,    W^ = dp^d W  (a smoothing kernel, dimensionless),
@@ -147,10 +148,16 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
     narrow, widen = make_narrow(arithmetic), make_widen(arithmetic)
 
     @wp.kernel(module=options.module, enable_backward=False)
-    def spread(offset: int, origin: point, position: wp.array(dtype=point), places: wp.array(dtype=wp.vec3)):
-        """One contact particle: its place for the hash grid, from the origin [m]."""
+    def spread(
+        offset: int,
+        origin: point,
+        near: wp.array(dtype=wp.int32),
+        position: wp.array(dtype=point),
+        places: wp.array(dtype=wp.vec3),
+    ):
+        """One near contact particle: its place for the hash grid, from the origin [m]."""
         k = offset + wp.tid()
-        x = position[k] - origin
+        x = position[near[k]] - origin
         place = wp.vec3()
         for axis in range(wp.static(dim)):
             place[axis] = wp.float32(x[axis])
@@ -178,6 +185,7 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         offset: int,
         grid: wp.uint64,
         p: contact,
+        near: wp.array(dtype=wp.int32),
         places: wp.array(dtype=wp.vec3),
         position: wp.array(dtype=point),
         rest: wp.array(dtype=point),
@@ -185,14 +193,16 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         rows: wp.array2d(dtype=wp.int32),
         counts: wp.array(dtype=wp.int32),
     ):
-        """One contact particle: all that it may touch within reach, by rising index; the count may exceed the row.
+        """One near contact particle: all that it may touch, by rising index; the count may exceed the row.
 
         In this order sums do not depend on when a list was made: what is too far adds zero.
         """
-        a = offset + wp.tid()
+        k = offset + wp.tid()
+        a = near[k]
         capacity = rows.shape[1]
         found = int(0)
-        for b in wp.hash_grid_query(grid, places[a], wp.float32(p.reach)):
+        for n in wp.hash_grid_query(grid, places[k], wp.float32(p.reach)):
+            b = near[n]
             if may_touch(a, b, p, body, rest) and wp.length(narrow(position[a], position[b])) < p.reach:
                 if found < capacity:
                     slot = found
@@ -208,6 +218,7 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         offset: int,
         p: contact,
         clock: wp.array(dtype=wp.float64),
+        near: wp.array(dtype=wp.int32),
         owner: wp.array(dtype=wp.int32),
         rest: wp.array(dtype=point),
         prescriptions: wp.array2d(dtype=pose_type),
@@ -216,11 +227,11 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         position: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
     ):
-        """One contact particle: where it is now.
+        """One near contact particle: where it is now.
 
         `owner` of a particle of a structure is that particle, of a wall the column of its motion, -1 where it rests.
         """
-        k = offset + wp.tid()
+        k = near[offset + wp.tid()]
         X = rest[k]
         if k < p.bodies:
             position[k] = X + displacement[owner[k]]
@@ -235,6 +246,7 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         offset: int,
         p: contact,
         clock: wp.array(dtype=wp.float64),
+        near: wp.array(dtype=wp.int32),
         position: wp.array(dtype=point),
         velocity: wp.array(dtype=point),
         rows: wp.array2d(dtype=wp.int32),
@@ -246,8 +258,8 @@ def make_contact_kernels(options: ContactOptions) -> ContactKernels:
         normal: wp.array(dtype=vector),
         heat: wp.array(dtype=real),
     ):
-        """One contact particle: c_a [1], q_a [J]; with friction T_a norm / c_a [N], slip [m], normal, heat [J]."""
-        a = offset + wp.tid()
+        """One near contact particle: c_a [1], q_a [J]; with friction T_a norm / c_a [N], slip [m], normal, heat [J]."""
+        a = near[offset + wp.tid()]
         x_a = position[a]
         c = real(0.0)
         gradient = vector()

@@ -27,6 +27,7 @@ def make_move(options: FluidOptions) -> Any:
         wall_volume: real,
         origin: point,
         poses: wp.array(dtype=pose_type),
+        placed: wp.array(dtype=wp.int32),
         set_index: wp.array(dtype=wp.int32),
         reference: wp.array(dtype=point),
         reference_normal: wp.array(dtype=vector),
@@ -37,9 +38,11 @@ def make_move(options: FluidOptions) -> Any:
         acceleration: wp.array(dtype=vector),
         normal: wp.array(dtype=vector),
     ):
-        """One wall particle: place it by the pose of its set, with the exact velocity and acceleration."""
+        """One wall particle of a set to be placed: place it by the pose, with the exact velocity and acceleration."""
         i = offset + wp.tid()
         b = first_wall + i
+        if placed[set_index[b]] == 0:
+            return
         pose = poses[set_index[b]]
         X = reference[i]
         x = pose.rotation * X + pose.shift

@@ -178,3 +178,35 @@ def test_static_contact_comes_to_rest():
 def test_contact_does_not_reach_over_periodic_faces():
     with pytest.raises(ValueError, match="periodic"):
         simulate(two_blocks(domain={"periodic": {"y": (0.0, 2.0)}}))
+
+
+def test_walls_that_are_left_out_while_far_change_nothing(monkeypatch):
+    """A block slides from one end of a long floor towards the other, into walls that were out of its reach at first."""
+
+    def slide(leeway: float):
+        monkeypatch.setattr("warpsph.physics.contact.LEEWAY", leeway)
+        simulation = simulate(on_slope(30.0, 0.1, speed=3.0))
+        model = simulation.system.parts.contact.model
+        near_at_first = len(model.near)
+        simulation.advance(0.4)
+        return simulation, near_at_first, model
+
+    few, near, model = slide(2.0)
+    all_of_them, _, whole = slide(1e3)
+    assert near < 0.7 * model.count
+    assert len(whole.near) == whole.count
+    assert centre(few, "block")[0] > 1.2
+    for field in ("position", "velocity"):
+        expected = all_of_them.frame((field,)).set_named("block").fields[field]
+        assert np.array_equal(few.frame((field,)).set_named("block").fields[field], expected)
+    assert np.array_equal(wall_force(few), wall_force(all_of_them))
+
+
+def test_a_far_wall_that_moves_costs_few_lists():
+    """A gate runs away from a block by ten spacings: lists are due with half the leeway, not with half the skin."""
+    gate = {"shape": region((10.0, 0.0), (10.2, 0.5)), "side": "solid"}
+    gate["motion"] = [{"type": "linear", "velocity": (5.0, 0.0)}]
+    simulation = simulate(touching({"block": body((0.0, 0.0), (0.6, 0.3))}, boundaries={"gate": gate}))
+    simulation.advance(0.2)
+    by_half_the_skin = 10.0 / 0.5
+    assert simulation.system.parts.contact.model.builds < 0.4 * by_half_the_skin

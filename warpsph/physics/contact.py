@@ -17,6 +17,7 @@ from warpsph.particles.launch import Launcher
 from warpsph.particles.rows import row_array
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import StructureModel
+from warpsph.physics.vicinity import cells_beside
 
 WENDLAND_C2 = SMOOTHING_KERNELS["wendland_c2"]
 H_OVER_DP = 1.5
@@ -25,6 +26,8 @@ of at most 0.3 % of that across it for penetrations up to a third of the spacing
 repulsion of pairs that ends at the spacing. The stiffness varies by 4 % over the same penetrations."""
 SKIN = 1.0
 """Reach of the lists beyond the range of contact, in spacings."""
+LEEWAY = 8.0
+"""Distance beyond the reach of the lists, in spacings, up to which particles of walls are looked at."""
 FIRST_CAPACITY = 16
 GROWTH = 1.3
 GRID_CELLS = {2: (128, 128, 1), 3: (64, 64, 64)}
@@ -32,6 +35,7 @@ MEMORY = ("slip", "normal")
 """Arrays of contact that evolve."""
 
 UNITS = {
+    "contact_near": "1",
     "contact_owner": "1",
     "contact_body": "1",
     "contact_rest": "m",
@@ -125,6 +129,7 @@ def _flat_nearness(dimension: int) -> Callable[[float], float]:
 class ContactArrays:
     """Arrays of contact particles; the lists stand apart, since they may grow."""
 
+    near: wp.array
     owner: wp.array
     body: wp.array
     rest: wp.array
@@ -163,12 +168,14 @@ class ContactModel:
         self.builds = 0
         self.touches = False
         """Whether any pair is listed."""
-        self.listed = surface.rest
-        """Where contact particles were when the lists were made last (m, dim) [m]."""
         self._launcher, self._structures = launcher, structures
         self._kernels = make_contact_kernels(options)
         self._numbers = self._describe()
         self.arrays = self._allocate(surface)
+        self.near = np.arange(self.count)
+        """Contact particles of structures, and of walls those that the lists have to look at."""
+        self.listed = surface.rest
+        """Where the near ones were when the lists were made last (near, dim) [m]."""
         dim = options.arithmetic.dimension
         self._grid = wp.HashGrid(*GRID_CELLS[dim], device=launcher.device)
         self._origin = options.arithmetic.point(*surface.rest.mean(axis=0))
@@ -180,39 +187,66 @@ class ContactModel:
         """Reach of the lists beyond the range of contact [m]."""
         return SKIN * self.law.spacing
 
-    def list_pairs(self, places: np.ndarray | None = None) -> None:
-        """List what may touch, from where everything was placed last or from given places (m, dim) [m]."""
-        if places is not None:
-            write_array(self.arrays.position, places)
-        self.listed = np.array(host_view(self.arrays.position))
-        self._spread.run(self.count)
-        self._grid.build(self.arrays.places, float(self._numbers.reach))
-        self._list.run(self.count)
+    @property
+    def leeway(self) -> float:
+        """How far a wall that is not near is from what the lists reach, when near ones are chosen [m]."""
+        return LEEWAY * self.law.spacing
+
+    @property
+    def moving_walls_near(self) -> bool:
+        """Whether particles of a wall that moves are near."""
+        return bool((self.surface.owner[self.near[self.bodies :]] >= 0).any())
+
+    def choose_near(self) -> None:
+        """Leave out of the lists the particles of walls that no structure can touch before it has moved a while."""
+        self._look_at(np.arange(self.count))
+        self.place()
+        edge = float(self._numbers.reach) + self.leeway
+        position = host_view(self.arrays.position)
+        walls = cells_beside(position[self.bodies :], position[: self.bodies], edge)
+        self._look_at(np.concatenate([np.arange(self.bodies), self.bodies + np.flatnonzero(walls)]))
+        self.arrays.counts.zero_()
+
+    def list_pairs(self) -> None:
+        """List what may touch among the near ones, from where they were placed last."""
+        near = len(self.near)
+        self.listed = host_view(self.arrays.position)[self.near]
+        self._spread.run(near)
+        self._grid.build(self.arrays.places[:near], float(self._numbers.reach))
+        self._list.run(near)
         longest = int(host_view(self.arrays.counts).max(initial=0))
         if longest > self.rows.shape[1]:
             self._make_rows(math.ceil(GROWTH * longest))
-            self._list.run(self.count)
+            self._list.run(near)
         self.touches = longest > 0
         self.builds += 1
         if not self.touches:
             self._part()
 
+    def list_again(self, near: np.ndarray, listed: np.ndarray) -> None:
+        """Make the lists that were made when these were `near`, and where `listed` says."""
+        self._look_at(near)
+        places = np.array(host_view(self.arrays.position))
+        places[near] = listed
+        write_array(self.arrays.position, places)
+        self.list_pairs()
+
     def place(self) -> None:
-        """Bring contact particles to where their owners are."""
-        self._place.run(self.count)
+        """Bring near contact particles to where their owners are."""
+        self._place.run(len(self.near))
 
     def push(self) -> None:
         """Find the forces of contact on structures, if anything is near enough."""
         if self.touches:
             self.place()
-            self._sense.run(self.count)
+            self._sense.run(len(self.near))
             self._push.run(self.bodies)
 
     def sense(self) -> None:
         """Find how near foreign surfaces are, and no forces."""
         if self.touches:
             self.place()
-            self._sense.run(self.count)
+            self._sense.run(len(self.near))
 
     def energy(self) -> np.ndarray:
         """Energy of contact (n,) [J] of all particles of structures, at the last forces.
@@ -248,9 +282,13 @@ class ContactModel:
         arrays = {f"contact_{m.name}": getattr(self.arrays, m.name) for m in fields(self.arrays)}
         return arrays | {"contact_rows": self.rows}
 
+    def _look_at(self, near: np.ndarray) -> None:
+        self.near = near
+        write_array(self.arrays.near, near)
+
     def _part(self) -> None:
         """Nothing touches: leave no force and no energy behind."""
-        self._sense.run(self.count)
+        self._sense.run(len(self.near))
         self._push.run(self.bodies)
 
     def _describe(self) -> Any:
@@ -278,6 +316,7 @@ class ContactModel:
 
         rubbing = count if self.options.friction else 1
         return ContactArrays(
+            near=array(np.arange(count), wp.int32),
             owner=array(surface.owner, wp.int32),
             body=array(surface.body, wp.int32),
             rest=array(surface.rest, point),
@@ -309,6 +348,7 @@ class ContactModel:
             self._kernels.place,
             self._numbers,
             structures.clock,
+            a.near,
             a.owner,
             a.rest,
             structures.scratch.prescriptions,
@@ -321,13 +361,14 @@ class ContactModel:
     def _bind_lists(self) -> None:
         a = self.arrays
         self._spread = self._launcher.bind(
-            "contact lists", self._kernels.spread, self._origin, a.position, a.places
+            "contact lists", self._kernels.spread, self._origin, a.near, a.position, a.places
         )
         self._list = self._launcher.bind(
             "contact lists",
             self._kernels.list_pairs,
             wp.uint64(self._grid.id),
             self._numbers,
+            a.near,
             a.places,
             a.position,
             a.rest,
@@ -342,7 +383,9 @@ class ContactModel:
         bind, kernels, p, clock = self._launcher.bind, self._kernels, self._numbers, structures.clock
         pairs, felt = (self.rows, a.counts), (a.pressure, a.drag)
         moving = (a.position, a.velocity, *pairs, a.nearness, *felt)
-        self._sense = bind("contact sensing", kernels.sense, p, clock, *moving, a.slip, a.normal, a.heat)
+        self._sense = bind(
+            "contact sensing", kernels.sense, p, clock, a.near, *moving, a.slip, a.normal, a.heat
+        )
         told = (a.heat, force, state.work, state.dissipated)
         self._push = bind("contact forces", kernels.push, p, clock, a.owner, a.body, *moving, *told)
         self._react = bind("contact forces", kernels.react, p, a.position, *pairs, *felt, a.wall_force)

@@ -11,6 +11,7 @@ from warpsph_kernels.pose import make_pose_struct
 from warpsph_kernels.wall_motion import make_move
 from warpsph_kernels.wall_surface import make_surface_kernels
 
+from warpsph.particles.launch import Pass
 from warpsph.particles.neighbours import NeighbourRows
 from warpsph.physics.assembly import Assembly, WallRange
 from warpsph.sampling.kinematics import Pose, RigidMotion
@@ -37,23 +38,30 @@ class PrescribedMotion:
         self.reference = wp.clone(assembly.state.position[walls.first : walls.first + walls.count])
         self.reference_normal = wp.zeros_like(walls.surface.normal)
         state, scratch = assembly.state, assembly.scratch
-        self._move = assembly.launcher.bind(
-            "move walls",
-            move,
-            walls.first,
-            assembly.constants.wall_volume,
-            assembly.origin,
-            self.poses,
-            state.set_index,
-            self.reference,
-            self.reference_normal,
-            state.position,
-            state.velocity_volume,
-            scratch.position_pressure,
-            scratch.position_density,
-            state.acceleration,
-            walls.surface.normal,
-        )
+
+        def bind(placed: np.ndarray) -> Pass:
+            return assembly.launcher.bind(
+                "move walls",
+                move,
+                walls.first,
+                assembly.constants.wall_volume,
+                assembly.origin,
+                self.poses,
+                wp.array(placed, dtype=wp.int32, device=assembly.launcher.device),
+                state.set_index,
+                self.reference,
+                self.reference_normal,
+                state.position,
+                state.velocity_volume,
+                scratch.position_pressure,
+                scratch.position_density,
+                state.acceleration,
+                walls.surface.normal,
+            )
+
+        self._place_all = bind(np.ones(sets))
+        self._place_moving = bind(np.isin(np.arange(sets), list(self._motions)))
+        self._reordered = False
 
     @property
     def own_arrays(self) -> dict[str, wp.array]:
@@ -65,18 +73,31 @@ class PrescribedMotion:
         """Whether some wall moves."""
         return bool(self._motions)
 
+    def note_order(self) -> None:
+        """Note that the particles of walls stand in a new order."""
+        self._reordered = True
+
     def move(self, time: float) -> None:
-        """Place every wall as prescribed for a time [s], if some wall moves."""
-        if self.moving:
+        """Place the walls that move as prescribed for a time [s]."""
+        if not self.moving:
+            return
+        if self._reordered:
             self.place(time)
+        else:
+            self._set_poses(time)
+            self._place_moving.run(self._walls.count)
 
     def place(self, time: float) -> None:
-        """Write position, velocity and acceleration of every wall particle."""
+        """Write position, velocity and acceleration of every wall particle for a time [s]."""
+        self._set_poses(time)
+        self._place_all.run(self._walls.count)
+        self._reordered = False
+
+    def _set_poses(self, time: float) -> None:
         poses = list(self._resting)
         for index, motion in self._motions.items():
             poses[index] = _device_pose(self._assembly, motion(time))
         wp.copy(self.poses, wp.array(poses, dtype=self.poses.dtype, device=self.poses.device))
-        self._move.run(self._walls.count)
 
     def find_surface(self, rows: NeighbourRows, listed_position: wp.array, spacing: float) -> None:
         """Find the normals of the surface of every wall from the walls around each wall particle."""
