@@ -312,6 +312,9 @@ def main() -> None:
     )
     parser.add_argument("--quick", action="store_true", help="short runs, printed and not written")
     asked = parser.parse_args()
+    unknown = [name for name in asked.table if name not in TABLES]
+    if unknown:
+        parser.error(f"no table {', '.join(unknown)}; allowed: {', '.join(TABLES)}")
     wp.config.quiet = True
     for name in asked.table or TABLES:
         columns, rows = TABLES[name]

@@ -115,3 +115,4 @@ def test_words() -> None:
     assert quoted_error(row(0.1, 0.001, uncertainty=0.01)) == "<= 1 %"
     assert quoted_error(row(0.1, 0.013, uncertainty=0.01)) == "1.3 %"
     assert quoted_error(row(0.1, None)) == "-"
+    assert quoted_error(row(0.1, 0.001, uncertainty=0.01) | {"error_unit": "m"}) == "<= 0.01 m"

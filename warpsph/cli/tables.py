@@ -9,6 +9,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
+from warpsph.report.words import claimed_error
 from warpsph.validation.options import options_in_words, without_effect
 from warpsph.validation.runner import CaseResult
 from warpsph.validation.study import studies_of
@@ -95,10 +96,8 @@ def _error(error: float | None, row: Row) -> str:
 
 
 def _quoted(row: Row) -> str:
-    """The error, or at most the uncertainty of the reference: nothing closer than that can be claimed."""
-    error, uncertainty = row["error"], row.get("uncertainty") or 0.0
-    below = error is not None and error < uncertainty
-    return f"<= {_error(uncertainty, row)}" if below else _error(error, row)
+    sign, error = claimed_error(row)
+    return sign + _error(error, row)
 
 
 def _remarks(rows: Iterable[Row]) -> list[str]:

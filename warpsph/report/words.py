@@ -24,14 +24,20 @@ def percent(error: float, digits: int = 2) -> str:
     return f"{scaled:.{digits}g} %" if scaled < 99.5 else f"{scaled:.0f} %"
 
 
+def claimed_error(row: Mapping[str, Any]) -> tuple[str, float | None]:
+    """What may be claimed of the error of a row: the error itself, or "<= " and its reference's uncertainty, if that is
+    larger: nothing closer than that is known."""
+    error, uncertainty = row["error"], row.get("uncertainty") or 0.0
+    return ("<= ", uncertainty) if error is not None and error < uncertainty else ("", error)
+
+
 def quoted_error(row: Mapping[str, Any]) -> str:
-    """The error of a row of a validation with its unit: at most the uncertainty, if that is larger."""
-    error, uncertainty, unit = row["error"], row.get("uncertainty") or 0.0, row.get("error_unit")
+    """The error that may be claimed of a row of a validation, with its unit."""
+    sign, error = claimed_error(row)
+    unit = row.get("error_unit")
     if error is None:
         return "-"
-    if error < uncertainty:
-        return f"<= {percent(uncertainty)}"
-    return f"{number(error, 2)} {unit}" if unit else percent(error)
+    return sign + (f"{number(error, 2)} {unit}" if unit else percent(error))
 
 
 def wall_time(seconds: float) -> str:
