@@ -64,15 +64,12 @@ def make_wall_kernels(options: FluidOptions) -> WallKernels:
         i = offset + wp.tid()
         w = first_wall + i
         xp_w = position_pressure[w]
-        end = ends[i, 0]
-        # Most walls of a large tank are dry: their pressure is zero already, and nothing reads what else they have.
-        if end == 0 and xp_w[dim] == real(0.0):
-            return
         x_w = unpack(xp_w)
         weights = scalars_type()
         pressures = scalars_type()
         moments = sums_type()
         velocities = sums_type()
+        end = ends[i, 0]
         n = int(0)
         while n < end:
             b = take(neighbours, i, n, end)
