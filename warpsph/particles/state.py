@@ -27,6 +27,7 @@ UNITS = {
     "wall_mirror": "m",
     "wall_reference": "m",
     "wall_normal": "1",
+    "wall_surface_normal": "1",
     "wall_force": "N",
     "stress": "Pa",
     "shift": "m/s",

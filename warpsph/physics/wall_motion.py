@@ -61,29 +61,21 @@ class PrescribedMotion:
 
         self._place_all = bind(np.ones(sets))
         self._place_moving = bind(np.isin(np.arange(sets), list(self._motions)))
-        self._reordered = False
 
     @property
     def own_arrays(self) -> dict[str, wp.array]:
         """Arrays of shape (walls,) that follow the order of the walls and belong into a checkpoint."""
-        return {"wall_reference": self.reference, "wall_normal": self.reference_normal}
+        normals = {"wall_normal": self.reference_normal, "wall_surface_normal": self._walls.surface.normal}
+        return {"wall_reference": self.reference} | normals
 
     @property
     def moving(self) -> bool:
         """Whether some wall moves."""
         return bool(self._motions)
 
-    def note_order(self) -> None:
-        """Note that the particles of walls stand in a new order."""
-        self._reordered = True
-
     def move(self, time: float) -> None:
         """Place the walls that move as prescribed for a time [s]."""
-        if not self.moving:
-            return
-        if self._reordered:
-            self.place(time)
-        else:
+        if self.moving:
             self._set_poses(time)
             self._place_moving.run(self._walls.count)
 
@@ -91,7 +83,6 @@ class PrescribedMotion:
         """Write position, velocity and acceleration of every wall particle for a time [s]."""
         self._set_poses(time)
         self._place_all.run(self._walls.count)
-        self._reordered = False
 
     def _set_poses(self, time: float) -> None:
         poses = list(self._resting)

@@ -198,8 +198,6 @@ class Stepper:
         for table in (self._parts.tables.wall, self._parts.tables.face):
             if table is not None and moving[table]:
                 self._search.sort(table, self._parts.followers[table])
-        if self._walls:
-            self._walls.motion.note_order()
         if self._faces:
             self._faces.faces.find_places()
         if self._symmetry:
