@@ -202,6 +202,16 @@ def test_walls_that_are_left_out_while_far_change_nothing(monkeypatch):
     assert np.array_equal(wall_force(few), wall_force(all_of_them))
 
 
+def test_all_near_walls_are_looked_at_and_no_far_ones():
+    model = simulate(on_slope(0.0, 0.0)).system.parts.contact.model
+    places = host_view(model.arrays.position)
+    structures, walls = places[: model.bodies], places[model.bodies :]
+    distance = np.linalg.norm(walls[:, None] - structures, axis=2).min(axis=1)
+    near = distance < (2.0 * 1.5 + 1.0 + 8.0) * SPACING  # support of the kernel, skin, leeway
+    assert 0 < near.sum() < len(walls)
+    assert np.array_equal(model.near, [*range(model.bodies), *(model.bodies + np.flatnonzero(near))])
+
+
 def test_a_far_wall_that_moves_costs_few_lists():
     """A gate runs away from a block by ten spacings: lists are due with half the leeway, not with half the skin."""
     gate = {"shape": region((10.0, 0.0), (10.2, 0.5)), "side": "solid"}

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import warp as wp
+from scipy.spatial import cKDTree
 from warpsph_kernels.contact import ContactOptions, make_contact_kernels, make_contact_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
@@ -17,7 +18,6 @@ from warpsph.particles.launch import Launcher
 from warpsph.particles.rows import row_array
 from warpsph.particles.state import host_view, write_array
 from warpsph.physics.structure import StructureModel
-from warpsph.physics.vicinity import cells_beside
 
 WENDLAND_C2 = SMOOTHING_KERNELS["wendland_c2"]
 H_OVER_DP = 1.5
@@ -174,6 +174,8 @@ class ContactModel:
         self.arrays = self._allocate(surface)
         self.near = np.arange(self.count)
         """Contact particles of structures, and of walls those that the lists have to look at."""
+        self.moving_walls_near = True
+        """Whether particles of a wall that moves are among them."""
         self.listed = surface.rest
         """Where the near ones were when the lists were made last (near, dim) [m]."""
         dim = options.arithmetic.dimension
@@ -192,19 +194,17 @@ class ContactModel:
         """How far a wall that is not near is from what the lists reach, when near ones are chosen [m]."""
         return LEEWAY * self.law.spacing
 
-    @property
-    def moving_walls_near(self) -> bool:
-        """Whether particles of a wall that moves are near."""
-        return bool((self.surface.owner[self.near[self.bodies :]] >= 0).any())
-
     def choose_near(self) -> None:
         """Leave out of the lists the particles of walls that no structure can touch before it has moved a while."""
         self._look_at(np.arange(self.count))
         self.place()
-        edge = float(self._numbers.reach) + self.leeway
+        far = float(self._numbers.reach) + self.leeway
         position = host_view(self.arrays.position)
-        walls = cells_beside(position[self.bodies :], position[: self.bodies], edge)
-        self._look_at(np.concatenate([np.arange(self.bodies), self.bodies + np.flatnonzero(walls)]))
+        structures, walls = position[: self.bodies], position[self.bodies :]
+        finite = np.isfinite(structures).all(axis=1)  # a run that diverges is stopped elsewhere
+        distance, _ = cKDTree(structures[finite]).query(walls, distance_upper_bound=far)
+        near_walls = self.bodies + np.flatnonzero(np.isfinite(distance))
+        self._look_at(np.concatenate([np.arange(self.bodies), near_walls]))
         self.arrays.counts.zero_()
 
     def list_pairs(self) -> None:
@@ -284,6 +284,7 @@ class ContactModel:
 
     def _look_at(self, near: np.ndarray) -> None:
         self.near = near
+        self.moving_walls_near = bool((self.surface.owner[near[self.bodies :]] >= 0).any())
         write_array(self.arrays.near, near)
 
     def _part(self) -> None:

@@ -25,7 +25,6 @@ class ContactStepper:
         self._model = parts.model
         self._moved = 0.0
         self._strayed = 0.0
-        self._near_speed = parts.wall_speed
 
     def raised(self, square: float) -> float:
         """The largest squared frequency of structures [1/s^2] with the springs of contact at their surfaces.
@@ -89,7 +88,6 @@ class ContactStepper:
         """Go on from what `save` returned; the state of the structures has been restored."""
         self._model.list_again(np.asarray(saved["contact_near"]), np.asarray(saved["contact_listed"]))
         self._moved, self._strayed = float(saved["contact_moved"]), float(saved["contact_strayed"])
-        self._note_near()
         self._model.sense()
         self._model.remember({name: np.asarray(saved[f"contact_{name}"]) for name in MEMORY})
 
@@ -103,7 +101,7 @@ class ContactStepper:
 
     def _stride(self, speed: float, dt: float) -> float:
         """How far something that is near may move in a step [m]."""
-        return max(speed, self._near_speed) * dt
+        return self._far_stride(speed, dt) if self._model.moving_walls_near else speed * dt
 
     def _far_stride(self, speed: float, dt: float) -> float:
         """How far anything may move in a step [m]."""
@@ -112,11 +110,7 @@ class ContactStepper:
     def _list(self, anew: bool) -> None:
         if anew:
             self._model.choose_near()
-            self._note_near()
             self._strayed = 0.0
         self._model.place()
         self._model.list_pairs()
         self._moved = 0.0
-
-    def _note_near(self) -> None:
-        self._near_speed = self._parts.wall_speed if self._model.moving_walls_near else 0.0
