@@ -38,6 +38,16 @@ def test_real_validation_prints_one_strict_json_object_a_row(
     assert all(row["holds"] is True and row["particles"] > 0 and row["wall_seconds"] > 0 for row in rows)
 
 
+def test_a_directory_that_cannot_be_made_is_bad_input_before_the_first_run(
+    warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
+) -> None:
+    ending(raising(AssertionError("a scene was run")))
+    (tmp_path / "file").write_text("kept")
+    result = warpsph("validate", scene_file, "--out", tmp_path / "file")
+    assert result.exit_code == 2
+    assert "this is a file; allowed: a directory" in result.stderr
+
+
 def test_broken_bound_fails(
     warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
 ) -> None:

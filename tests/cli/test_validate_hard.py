@@ -25,6 +25,11 @@ def broken(machine: Machine) -> list[Figure]:
     return [Figure("leaks", 2.0, 0.0)]
 
 
+def never(machine: Machine) -> list[Figure]:
+    """A case that must not be run."""
+    raise AssertionError("a case was run")
+
+
 @pytest.fixture(autouse=True)
 def two_cases(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(suite, "HARD_CASES", (HardCase(kept), HardCase(broken)))
@@ -58,6 +63,17 @@ def test_a_page_that_says_what_holds(warpsph: Command, tmp_path: Path) -> None:
     page = (tmp_path / "hard.html").read_text()
     assert "1 of 2 cases keep their bounds." in page
     assert "A case that holds &lt;well&gt;." in page
+
+
+def test_a_directory_that_cannot_be_made_is_bad_input_before_the_first_case(
+    warpsph: Command, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(suite, "HARD_CASES", (HardCase(never),))
+    (tmp_path / "file").write_text("kept")
+    result = warpsph("validate", "--hard", "--out", tmp_path / "file" / "results")
+    assert result.exit_code == 2
+    assert "file/results: cannot write: Not a directory" in result.stderr
+    assert "defect" not in result.stderr
 
 
 def test_a_name_that_there_is_not(warpsph: Command, tmp_path: Path) -> None:

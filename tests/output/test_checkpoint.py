@@ -7,6 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from warpsph import __version__
 from warpsph.output.checkpoint import CheckpointError, read_checkpoint, write_checkpoint
 from warpsph.output.errors import OutputError
 
@@ -49,6 +50,7 @@ def test_numpy_scalars_and_long_scenes_come_back(tmp_path):
     checkpoint = read_checkpoint(tmp_path / "c.h5")
     assert_same(checkpoint.state, state)
     assert len(checkpoint.scene_text) == 200_000
+    assert checkpoint.writer == __version__
 
 
 @pytest.fixture

@@ -44,6 +44,13 @@ def test_directory_that_cannot_be_made_is_an_error_with_path_and_reason(tmp_path
         create_run_directory(tmp_path / "file" / "run", tank_scene(2))
 
 
+def test_directory_that_is_closed_to_new_files_is_found_before_the_first_one(tmp_path, monkeypatch):
+    monkeypatch.setattr("os.access", lambda path, mode: False)
+    with pytest.raises(OutputError, match=r"cannot write: the directory is closed to new files"):
+        create_run_directory(tmp_path, tank_scene(2))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_a_file_in_place_of_the_directory_is_called_a_file(tmp_path):
     (tmp_path / "file").write_text("kept")
     with pytest.raises(OutputError, match=r"this is a file; allowed: a directory"):

@@ -126,6 +126,17 @@ def test_a_checkpoint_of_another_scene_is_refused(tmp_path):
         run_scene(other, tmp_path, device="cpu", resume=True)
 
 
+def test_a_checkpoint_without_a_field_of_the_present_scheme_is_refused(tmp_path):
+    run_scene(sloshing(end=0.1), tmp_path, device="cpu")
+    older = sloshing(end=0.2)
+    with h5py.File(tmp_path / "checkpoint.h5", "a") as file:
+        del file["state/simulation/wall_surface_normal"]
+        del file.attrs["written_by"]
+    missing = r"checkpoint\.h5: it lacks wall_surface_normal, .* did not leave its name\. Start anew"
+    with pytest.raises(CheckpointError, match=missing):
+        run_scene(older, tmp_path, device="cpu", resume=True)
+
+
 def test_resume_without_a_checkpoint_is_refused(tmp_path):
     with pytest.raises(CheckpointError, match="no such checkpoint"):
         run_scene(sloshing(), tmp_path, device="cpu", resume=True)

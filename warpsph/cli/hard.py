@@ -24,10 +24,12 @@ def validate_hard(
     All figures also go to hard.json in the directory, with a page to hard.html.
     """
     from warpsph.cli.consoles import plain_console
+    from warpsph.cli.kept import require_directory
     from warpsph.report.hard import write_hard
     from warpsph.validation.hard.case import run_hard_case
 
     cases = chosen_cases(names)
+    require_directory(out)
     results: list[HardResult] = []
     try:
         for number, case in enumerate(cases, start=1):

@@ -1,4 +1,4 @@
-"""What remains of a run that was cut short, and how to go on with it."""
+"""Where results are kept, what remains of a run that was cut short, and how to go on with it."""
 
 from __future__ import annotations
 
@@ -8,6 +8,17 @@ from pathlib import Path
 
 from warpsph.cli.failures import BadInput
 from warpsph.cli.progress import Reporter
+
+
+def require_directory(path: Path) -> None:
+    """Make the directory of results before anything runs; raises BadInput where that is impossible."""
+    from warpsph.output.errors import OutputError
+    from warpsph.output.run_directory import make_directory
+
+    try:
+        make_directory(path)
+    except OutputError as error:
+        raise BadInput(str(error)) from error
 
 
 @contextlib.contextmanager

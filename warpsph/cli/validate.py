@@ -87,6 +87,7 @@ def validate(
     found before the first run.
     """
     from warpsph.cli.consoles import plain_console
+    from warpsph.cli.kept import require_directory
     from warpsph.cli.tables import validation_table
     from warpsph.cli.warp_runtime import start_warp
     from warpsph.validation.convergence import judged
@@ -105,6 +106,7 @@ def validate(
     spacings = parse_spacings(resolutions)
     compared = parse_compared(compare or ())
     cases = planned_cases(scenes, quick, spacings, overrides or (), compared)
+    require_directory(out)
     progress = plain_console(stderr=True, quiet=quiet)
     start_warp(device, verbose=verbose)
     results: list[CaseResult] = []

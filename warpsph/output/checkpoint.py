@@ -9,11 +9,13 @@ from typing import Any
 import h5py
 import numpy as np
 
+from warpsph import __version__
 from warpsph.output.atomic import write_atomically
 from warpsph.output.hdf5_image import file_image
 
 FORMAT = "warpsph checkpoint"
 VERSION = 1
+"""Of the format; what a state holds is checked by who goes on from it."""
 
 
 class CheckpointError(RuntimeError):
@@ -25,10 +27,11 @@ class CheckpointError(RuntimeError):
 
 @dataclass(frozen=True)
 class Checkpoint:
-    """What `write_checkpoint` was given."""
+    """What `write_checkpoint` was given, and the version of warpsph that wrote it, if it says."""
 
     state: dict[str, Any]
     scene_text: str
+    writer: str | None = None
 
 
 def write_checkpoint(path: Path, state: Mapping[str, Any], scene_text: str) -> None:
@@ -40,6 +43,7 @@ def write_checkpoint(path: Path, state: Mapping[str, Any], scene_text: str) -> N
     def fill(file: h5py.File) -> None:
         file.attrs["format"] = FORMAT
         file.attrs["version"] = VERSION
+        file.attrs["written_by"] = __version__
         file["scene"] = scene_text
         _write_group(file.create_group("state"), state)
 
@@ -53,7 +57,9 @@ def read_checkpoint(path: Path) -> Checkpoint:
     try:
         with h5py.File(path, "r") as file:
             _require_format(path, file)
-            return Checkpoint(_read_group(file["state"]), file["scene"].asstr()[()])
+            return Checkpoint(
+                _read_group(file["state"]), file["scene"].asstr()[()], file.attrs.get("written_by")
+            )
     except (OSError, KeyError, ValueError, RuntimeError) as error:
         if isinstance(error, CheckpointError):
             raise

@@ -1,5 +1,6 @@
 """The directory of a run, the names of its files, and the frame writers that a scene asks for."""
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -69,17 +70,27 @@ def create_run_directory(path: Path, scene: Scene, *, resume: bool = False) -> R
     Raises OutputError if the directory cannot be made or written.
     """
     directory = RunDirectory(path)
+    make_directory(path)
     try:
-        path.mkdir(parents=True, exist_ok=True)
         if not resume:
             directory.summary.unlink(missing_ok=True)
             directory.checkpoint.unlink(missing_ok=True)
-    except FileExistsError as error:
-        raise OutputError(path, "this is a file; allowed: a directory, made if it is missing") from error
     except OSError as error:
         raise OutputError(path, f"cannot write: {reason_of(error)}") from error
     write_atomically(directory.scene, scene.to_yaml(directory.path).encode())
     return directory
+
+
+def make_directory(path: Path) -> None:
+    """Make a directory for results where there is none. Raises OutputError if it cannot be made or written."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except FileExistsError as error:
+        raise OutputError(path, "this is a file; allowed: a directory, made if it is missing") from error
+    except OSError as error:
+        raise OutputError(path, f"cannot write: {reason_of(error)}") from error
+    if not os.access(path, os.W_OK | os.X_OK):
+        raise OutputError(path, "cannot write: the directory is closed to new files")
 
 
 def frame_stores(directory: RunDirectory, scene: Scene) -> tuple[FrameStore, ...]:

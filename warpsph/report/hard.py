@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from warpsph.output.atomic import write_atomically
+from warpsph.output.run_directory import make_directory
 from warpsph.output.summary import write_summary
 from warpsph.report.html import document, table, verdict
 from warpsph.report.words import number, quantity_in_words
@@ -39,7 +40,7 @@ def _with_unit(value: float | None, record: Record) -> str:
 
 def write_hard(results: Sequence[HardResult], directory: Path, *, with_page: bool) -> Iterator[Path]:
     """Write hard.json and, if asked for, hard.html; yield the path of each. Raises OutputError."""
-    directory.mkdir(parents=True, exist_ok=True)
+    make_directory(directory)
     records = [record for result in results for record in result.as_records()]
     write_summary(directory / RECORD, {"figures": records})
     yield directory / RECORD

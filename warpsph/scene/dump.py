@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from io import StringIO
 from pathlib import Path
 from typing import Any
@@ -12,6 +13,7 @@ from ruamel.yaml.comments import CommentedMap, CommentedSeq
 from ruamel.yaml.representer import RoundTripRepresenter
 from ruamel.yaml.scalarstring import DoubleQuotedScalarString
 
+from warpsph.scene.file_names import with_file_names
 from warpsph.scene.types import SceneModel
 
 _WIDTH = 110
@@ -39,22 +41,15 @@ def to_yaml(scene: SceneModel, base_directory: Path, directory: Path | None) -> 
     yaml.width = _WIDTH
     data = scene.model_dump()
     if directory is not None:
-        data = _moved(data, base_directory.resolve(), directory.resolve())
+        data = with_file_names(data, _moving(base_directory.resolve(), directory.resolve()))
     stream = StringIO()
     yaml.dump(_styled(data), stream)
     return stream.getvalue()
 
 
-def _moved(data: Any, origin: Path, destination: Path) -> Any:
-    """The data with the file names under every key `file` relative to the destination."""
-    if isinstance(data, dict):
-        return {
-            key: os.path.relpath(origin / value, destination)
-            if key == "file" and isinstance(value, str) and not Path(value).is_absolute()
-            else _moved(value, origin, destination)
-            for key, value in data.items()
-        }
-    return [_moved(item, origin, destination) for item in data] if isinstance(data, list | tuple) else data
+def _moving(origin: Path, destination: Path) -> Callable[[str], str]:
+    """What lets relative file names count from another directory."""
+    return lambda name: name if Path(name).is_absolute() else os.path.relpath(origin / name, destination)
 
 
 def _styled(data: Any) -> Any:

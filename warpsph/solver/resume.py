@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from pathlib import Path
 
 from ruamel.yaml import YAML
 
-from warpsph.output.checkpoint import CheckpointError
+from warpsph import __version__
+from warpsph.output.checkpoint import Checkpoint, CheckpointError
 from warpsph.scene.schema import Scene
 
 FREE_KEYS = {"description", "references", "validation"}
@@ -18,6 +20,22 @@ def require_time_left(scene: Scene, time: float, path: Path) -> None:
     if time > scene.time.end:
         raise CheckpointError(
             path, f"it is of t = {time:.6g} s, after time.end = {scene.time.end:.6g} s; allowed: a later end"
+        )
+
+
+def require_all_of(state: Iterable[str], checkpoint: Checkpoint, path: Path) -> None:
+    """Raise CheckpointError if a checkpoint has no value for one of the names of the simulation's state.
+
+    So it is with checkpoints of versions that did not have some field or term of the present scheme.
+    """
+    if missing := sorted(set(state) - set(checkpoint.state["simulation"])):
+        writer = (
+            f"warpsph {checkpoint.writer}" if checkpoint.writer else "a version that did not leave its name"
+        )
+        raise CheckpointError(
+            path,
+            f"it lacks {', '.join(missing)}, which warpsph {__version__} needs to go on; it was written by {writer}. "
+            "Start anew, without --resume, or go on with the version that wrote it",
         )
 
 

@@ -22,7 +22,7 @@ from warpsph.scene.schema import Scene
 from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.interruption import Interruption
 from warpsph.solver.recordings import Recordings
-from warpsph.solver.resume import require_same_run, require_time_left
+from warpsph.solver.resume import require_all_of, require_same_run, require_time_left
 from warpsph.solver.schedule import Stop, schedule
 from warpsph.solver.simulation import Simulation
 from warpsph.solver.summary import StepStatistics, summarise
@@ -73,6 +73,7 @@ def run_scene(
         require_same_run(scene, saved.scene_text, RunDirectory(out).checkpoint)
         time_saved = float(saved.state["simulation"]["time"])
         require_time_left(scene, time_saved, RunDirectory(out).checkpoint)
+        require_all_of(sim.save_state(), saved, RunDirectory(out).checkpoint)
     run = _Run(sim, create_run_directory(out, scene, resume=resume), reporter)
     if saved is not None:
         run.restore(saved.state)
