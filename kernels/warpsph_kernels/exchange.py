@@ -1,7 +1,8 @@
 """Exchange at open boundaries: fluid enters the domain from buffers, leaves it into them, and leaves them behind.
 
 A particle that enters leaves its place to a new one, a buffer's length behind it, so that a column of the buffer keeps
-its spacing.
+its spacing. What is behind a patch belongs to the buffer only where the flow on the patch goes out: a particle that has
+entered and is pushed or shifted back has its successor already, and a second one would follow when it came out again.
 """
 
 from functools import cache
@@ -9,10 +10,10 @@ from typing import Any, NamedTuple
 
 import warp as wp
 
-from warpsph_kernels.arithmetic import make_separation
+from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.cells import REMOVED
 from warpsph_kernels.fluid import FluidOptions
-from warpsph_kernels.open_boundary import make_across, make_patch_struct
+from warpsph_kernels.open_boundary import make_across, make_nearest_station, make_patch_struct
 from warpsph_kernels.pair_terms import make_constants_struct
 
 ENTERED, LEFT, REMOVED_BEHIND = range(3)
@@ -44,6 +45,8 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
     patch_type, constants_type = make_patch_struct(options), make_constants_struct(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
     across = make_across(options)
+    nearest_station = make_nearest_station(options)
+    _, unpack = make_packing(arithmetic)
     module = options.module_of("exchange")
 
     @wp.func
@@ -59,13 +62,15 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
         c: constants_type,
         patches: wp.array(dtype=patch_type),
         margin: real,
+        imposed: wp.array(dtype=arithmetic.record),
         listed_position: wp.array(dtype=vector),
         tag: wp.array(dtype=wp.int32),
         event: wp.array(dtype=wp.int32),
         births: wp.array(dtype=wp.int32),
     ):
         """One fluid particle: its new tag, what happens to it (EVENTS k + event at patch k, else -1), and whether a
-        particle takes its place at the far end of the buffer that it leaves inwards."""
+        particle takes its place at the far end of the buffer that it leaves inwards. `imposed`: velocity [m/s] and
+        pressure on the patches."""
         i = offset + wp.tid()
         x = listed_position[i]
         k = tag[i]
@@ -85,9 +90,11 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
                 away = separation(x, patch.center, c.period)
                 depth = wp.dot(away, patch.normal)
                 behind = depth < real(0.0) and depth >= -patch.length
-                if happens < 0 and behind and on_patch(patch, across(patch, away), margin):
-                    tag[i] = j
-                    happens = wp.static(EVENTS) * j + wp.static(LEFT)
+                s = across(patch, away)
+                if happens < 0 and behind and on_patch(patch, s, margin):
+                    if wp.dot(unpack(imposed[nearest_station(patch, s)]), patch.normal) < real(0.0):
+                        tag[i] = j
+                        happens = wp.static(EVENTS) * j + wp.static(LEFT)
         event[i] = happens
         births[i] = born
 

@@ -93,6 +93,23 @@ def make_across(options: FluidOptions) -> Any:
 
 
 @cache
+def make_nearest_station(options: FluidOptions) -> Any:
+    """Return the device function `nearest_station(patch, s) -> int`: the station nearest to coordinates across."""
+    dim, real = options.arithmetic.dimension, options.arithmetic.real
+    pair, counts_type = wp.types.vector(2, real), wp.types.vector(2, wp.int32)
+    patch_type = make_patch_struct(options)
+
+    def nearest_station(patch: patch_type, s: pair):
+        at = counts_type()
+        for k in range(wp.static(dim - 1)):
+            cell = int(wp.floor((s[k] + patch.half[k]) / patch.cell[k]))
+            at[k] = wp.clamp(cell, 0, patch.counts[k] - 1)
+        return patch.first_station + at[0] * patch.counts[1] + at[1]
+
+    return wp.func(nearest_station)
+
+
+@cache
 def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     """Return the kernels of open boundaries specialised for the options."""
     arithmetic = options.arithmetic

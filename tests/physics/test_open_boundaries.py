@@ -9,6 +9,7 @@ import pytest
 from open_boundary_builders import DP, channel, pipe
 from scipy.spatial import cKDTree
 
+from warpsph.particles.state import host_view
 from warpsph.scene import Scene
 from warpsph.solver.simulation import Simulation
 
@@ -108,6 +109,30 @@ def test_the_mass_that_is_counted_is_that_of_the_flux() -> None:
     total = sum(patch.entered - patch.left for patch in passed.values())
     assert inside() - before == pytest.approx(total, abs=10)
     assert sim.removed_count == 0
+
+
+def move(sim: Simulation, ids: np.ndarray, way: float) -> None:
+    """Move the particles with these ids along x by a way [m], and make new lists."""
+    state, count = sim.system.parts.assembly.state, sim.system.parts.fluid.count  # type: ignore[attr-defined]
+    chosen = np.isin(host_view(state.id)[:count], ids)
+    host_view(state.position)[:count][chosen, 0] += way
+    sim.system.stepper.renew_lists()  # type: ignore[attr-defined]
+
+
+def test_a_particle_that_is_pushed_back_into_an_inlet_has_no_second_successor() -> None:
+    """The first layer of the fluid is pushed over the interface and out again: as many particles as before."""
+    sim = Simulation(channel(), device="cpu")
+    sim.advance(0.53)
+    system, state = sim.system, fluid(sim, "id")
+    depth = state["position"][:, 0]
+    first = state["id"][(depth > 0.0) & (depth < DP)]
+    before, passed = sim.sets, system.inflows()["inlet"]
+    for _ in range(2):
+        for way in (-DP, DP):
+            move(sim, first, way)
+            assert sim.sets == before
+    assert len(first) == 10
+    assert system.inflows()["inlet"] == passed
 
 
 def test_a_buffer_on_a_lattice_of_its_own_brings_in_that_lattice() -> None:

@@ -126,6 +126,7 @@ class ExchangeModel:
             a.constants,
             patches,
             margin,
+            model.imposed,
             search.listed_position,
             model.tag,
             self._event,

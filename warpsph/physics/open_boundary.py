@@ -40,9 +40,10 @@ KINDS = {
 class OpenBoundaryModel:
     """The passes of open boundaries within a step.
 
-    tag: (places,) index of the patch in whose buffer a fluid particle is, else -1; undisturbed: (stations,) running
-    mean of the velocity at non-reflecting patches [m/s]; flux, mass: (patches,) mass that enters a second [kg/s] and
-    its integral [kg]; in 2D per metre of depth.
+    tag: (places,) index of the patch in whose buffer a fluid particle is, else -1; imposed: (stations,) velocity
+    [m/s] and pressure [Pa] on the patches; undisturbed: (stations,) running mean of the velocity at non-reflecting
+    patches [m/s]; flux, mass: (patches,) mass that enters a second [kg/s] and its integral [kg]; in 2D per metre of
+    depth.
     """
 
     def __init__(self, scene: Scene, assembly: Assembly, search: NeighbourSearch, fluid: FluidModel) -> None:
@@ -72,7 +73,12 @@ class OpenBoundaryModel:
     @property
     def kept_arrays(self) -> dict[str, wp.array]:
         """Arrays that belong into a checkpoint and follow nothing."""
-        return {"patch_undisturbed": self.undisturbed, "patch_flux": self.flux, "patch_mass": self.mass}
+        return {
+            "patch_imposed": self.imposed,
+            "patch_undisturbed": self.undisturbed,
+            "patch_flux": self.flux,
+            "patch_mass": self.mass,
+        }
 
     @property
     def passes(self) -> list[str]:
@@ -140,7 +146,7 @@ class OpenBoundaryModel:
         self._prescribed_array = wp.zeros(self.stations, dtype=arithmetic.record, device=device)
         self._prescribed = HostTable(self._prescribed_array)
         self._inside = wp.zeros(self.stations, dtype=arithmetic.record, device=device)
-        self._imposed = wp.zeros(self.stations, dtype=arithmetic.record, device=device)
+        self.imposed = wp.zeros(self.stations, dtype=arithmetic.record, device=device)
         self._slope = wp.zeros(self.stations, dtype=arithmetic.real, device=device)
         self.undisturbed = wp.zeros(self.stations, dtype=arithmetic.vector, device=device)
         self._mean_pressure = wp.zeros(len(self.patches), dtype=arithmetic.real, device=device)
@@ -199,7 +205,7 @@ class OpenBoundaryModel:
             self._inside,
             self._mean_pressure,
             self.undisturbed,
-            self._imposed,
+            self.imposed,
         )
         self._tally = bind(
             "impose",
@@ -208,7 +214,7 @@ class OpenBoundaryModel:
             a.clock,
             patches,
             self._weight,
-            self._imposed,
+            self.imposed,
             self.flux,
             self.mass,
         )
@@ -219,7 +225,7 @@ class OpenBoundaryModel:
             patches,
             self._tagged,
             self.tag,
-            self._imposed,
+            self.imposed,
             self._slope,
             state.velocity_volume,
             state.density_deviation,
