@@ -24,6 +24,9 @@ Frames = Annotated[
 Fps = Annotated[
     float | None, typer.Option(min=0.1, help="Frames a second of the movie. Default: real time, 60 at most.")
 ]
+Streamlines = Annotated[
+    bool, typer.Option("--streamlines", help="Draw the streamlines of each moment; in two dimensions.")
+]
 
 DEFAULT_SIZE = "1280x720"
 
@@ -35,6 +38,7 @@ def render(
     size: Size = DEFAULT_SIZE,
     frames: Frames = ":",
     fps: Fps = None,
+    streamlines: Streamlines = False,
     verbose: Verbose = False,
 ) -> ExitCode:
     """Draw the frames of a run: a PNG each and one MP4, in the directory `render` beside the frames.
@@ -46,7 +50,15 @@ def render(
 
     require_render_extra()
     start_warp(verbose=verbose)
-    draw(source, plain_console(), field=field, size=parse_size(size), frames=frames, fps=fps)
+    draw(
+        source,
+        plain_console(),
+        field=field,
+        size=parse_size(size),
+        frames=frames,
+        fps=fps,
+        streamlines=streamlines,
+    )
     return ExitCode.OK
 
 
@@ -58,6 +70,7 @@ def draw(
     size: tuple[int, int] | None = None,
     frames: str = ":",
     fps: float | None = None,
+    streamlines: bool = False,
 ) -> None:
     """Draw with a progress bar, and say where the pictures are."""
     require_render_extra()
@@ -73,6 +86,7 @@ def draw(
             size=size or parse_size(DEFAULT_SIZE),
             frames=frames,
             fps=fps,
+            streamlines=streamlines,
             progress=lambda done, total: bar.update(task, completed=done, total=total),
         )
     console.print(f"{len(pictures.images)} pictures in {pictures.images[0].parent}", soft_wrap=True)

@@ -18,13 +18,15 @@ _TYPICAL_FRAMES = 24
 
 @dataclass(frozen=True)
 class RenderedSet:
-    """One set at one time: position (n, 3) [m], diameter [m], value to colour by, (n,) or none."""
+    """One set at one time: position (n, 3) [m], diameter [m], value to colour by, (n,) or none, and velocity (n, 3)
+    [m/s] where it was asked for."""
 
     name: str
     kind: str
     position: np.ndarray
     diameter: float
     value: np.ndarray | None
+    velocity: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -86,16 +88,17 @@ class ParticleCache:
         spread = np.linspace(0, len(self.codes) - 1, _TYPICAL_FRAMES)
         return [int(index) for index in np.unique(spread.round())]
 
-    def frame(self, index: int, field: str) -> RenderedFrame:
+    def frame(self, index: int, field: str, *, velocities: bool = False) -> RenderedFrame:
         """Frame number `index` (of `codes`) with a field to colour by; a vector or tensor field gives its magnitude."""
         code = self.codes[index]
-        sets = tuple(self._set(s, code, field) for s in self._sets)
+        sets = tuple(self._set(s, code, field, velocities) for s in self._sets)
         return RenderedFrame(code / self.frame_rate, sets)
 
-    def _set(self, points: UsdGeom.Points, code: float, field: str) -> RenderedSet:
+    def _set(self, points: UsdGeom.Points, code: float, field: str, velocities: bool) -> RenderedSet:
         widths = self._array(points.GetWidthsAttr(), code)
         position = self._array(points.GetPointsAttr(), code).reshape(-1, 3).astype(np.float64)
         value = self._values(points, code, field)
+        velocity = self._array(points.GetVelocitiesAttr(), code) if velocities else None
         sound = np.isfinite(position).all(axis=1)
         if value is not None:
             sound &= np.isfinite(value)
@@ -105,6 +108,7 @@ class ParticleCache:
             position=position[sound],
             diameter=float(widths[0]) if len(widths) else 0.0,
             value=None if value is None else value[sound],
+            velocity=velocity[sound] if velocity is not None and len(velocity) else None,
         )
 
     def _values(self, points: UsdGeom.Points, code: float, field: str) -> np.ndarray | None:

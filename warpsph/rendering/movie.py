@@ -39,6 +39,7 @@ def render(
     size: tuple[int, int] = (1280, 720),
     frames: str = ":",
     fps: float | None = None,
+    streamlines: bool = False,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Pictures:
     """Draw frames of a run directory or USD file into a directory `render` beside the USD file.
@@ -46,10 +47,10 @@ def render(
     Args:
         field: to colour by; a vector field by its magnitude.
         size: width and height in pixels, both even.
-        frames: which to draw, as a Python slice such as `10:50:2`, or one number; negative ones count from
-        the
+        frames: which to draw, as a Python slice such as `10:50:2`, or one number; negative ones count from the
             end. One picture alone makes no movie.
         fps: frames a second of the movie; by default real time, 60 at most.
+        streamlines: draw those of the fluid at each moment; in two dimensions.
         progress: called with the number of pictures made and the total.
 
     Raises:
@@ -60,11 +61,13 @@ def render(
     cache = ParticleCache(source)
     if field not in cache.fields:
         raise RenderError(f"there is no field {field!r} in {cache.path}; there are {', '.join(cache.fields)}")
+    if streamlines and not cache.is_plane:
+        raise RenderError(f"streamlines are drawn in two dimensions, and {cache.path} has three")
     indices = chosen_frames(frames, len(cache.codes))
     directory = cache.path.parent / "render"
     paths = tuple(directory / f"{field}_{index:04d}.png" for index in indices)
     movie = directory / f"{field}.mp4" if len(indices) > 1 else None
-    drawn = _drawn(cache, field, size, indices)
+    drawn = _drawn(cache, field, size, indices, streamlines)
     try:
         directory.mkdir(exist_ok=True)
         with _movie_writer(movie, size, fps or _real_time_rate(cache, indices)) as append:
@@ -99,13 +102,16 @@ def _check_size(size: tuple[int, int]) -> None:
 
 
 def _drawn(
-    cache: ParticleCache, field: str, size: tuple[int, int], indices: Sequence[int]
+    cache: ParticleCache, field: str, size: tuple[int, int], indices: Sequence[int], streamlines: bool
 ) -> Iterator[np.ndarray]:
     scale, extent = scale_of(cache, field), extent_of(cache, field)
-    is_plane = cache.is_plane
-    view = PlaneView(scale, extent, size) if is_plane else SpaceView(scale, extent, size, cache.up_axis)
+    view: PlaneView | SpaceView
+    if cache.is_plane:
+        view = PlaneView(scale, extent, size, streamlines=streamlines)
+    else:
+        view = SpaceView(scale, extent, size, cache.up_axis)
     for index in indices:
-        yield view.draw(cache.frame(index, field))
+        yield view.draw(cache.frame(index, field, velocities=streamlines))
 
 
 def _real_time_rate(cache: ParticleCache, indices: Sequence[int]) -> float:

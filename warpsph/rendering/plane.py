@@ -9,6 +9,7 @@ from matplotlib.collections import EllipseCollection
 from warpsph.rendering.cache import RenderedFrame, RenderedSet
 from warpsph.rendering.colour import ColourScale
 from warpsph.rendering.figure import BAR_STRIP, Box, add_colour_bar, add_time, page, pixels, style_axes
+from warpsph.rendering.streamlines import draw_streamlines
 
 WALL_COLOUR = "#a3a8b0"
 FLUID_WITHOUT_VALUE = "#1f79bd"
@@ -24,10 +25,16 @@ class PlaneView:
     """Draws the frames of one run in one window."""
 
     def __init__(
-        self, scale: ColourScale, extent: tuple[np.ndarray, np.ndarray], size: tuple[int, int]
+        self,
+        scale: ColourScale,
+        extent: tuple[np.ndarray, np.ndarray],
+        size: tuple[int, int],
+        *,
+        streamlines: bool = False,
     ) -> None:
-        """Show the extent [m] in pictures of that size in pixels."""
+        """Show the extent [m] in pictures of that size in pixels; streamlines need frames with velocities."""
         self._scale = scale
+        self._streamlines = streamlines
         self._size = size
         self._low, self._high = _with_margin(*extent)
 
@@ -44,6 +51,8 @@ class PlaneView:
         for body in frame.of_kind("fluid", "structure"):
             colours = FLUID_WITHOUT_VALUE if body.value is None else self._scale.rgb(body.value)
             _discs(axes, body, colours)
+        if self._streamlines:
+            draw_streamlines(axes, frame.of_kind("fluid"))
         add_colour_bar(figure, self._scale, left + width + 0.015, bottom, height)
         add_time(figure, frame.time, left, bottom + height + 0.055)
         return pixels(figure)
