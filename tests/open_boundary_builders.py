@@ -124,3 +124,38 @@ def _longer(cylinder: dict[str, Any]) -> dict[str, Any]:
 def _rotation(degrees: float) -> np.ndarray:
     angle = np.deg2rad(degrees)
     return np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+
+
+def stream(*, speed: float = 0.5, dimension: int = 2, **changes: Any) -> Scene:
+    """Water 1 m deep and 2 m long, with a free surface, over a level bed, between open boundaries that hold its level;
+    in three dimensions 0.4 m wide, between walls. Without `speed` both ends hold the level alone."""
+    flat = () if dimension == 2 else (0.2,)
+    shape = {"width": 1.5} if dimension == 2 else {"size": (1.5, 0.4), "along": (0.0, 1.0, 0.0)}
+    zero = (0.0,) * (dimension - 2)
+
+    def end(x: float, into: float, **law: Any) -> dict[str, Any]:
+        return {
+            "shape": {"center": (x, 0.75, *zero), "normal": (into, 0.0, *zero), **shape},
+            "level": 1.0,
+            **law,
+        }
+
+    driven = {"type": "velocity", "velocity": {"type": "uniform", "speed": speed}}
+    sides = ("x_min", "x_max", "y_max")
+    tank = {"type": "box", "min": (-1.5, 0.0, *(-w for w in flat)), "max": (3.5, 1.5, *flat)}
+    water = {"type": "box", "min": (0.0, 0.0, *(-w for w in flat)), "max": (2.0, 1.0, *flat)}
+    data: dict[str, Any] = {
+        "name": "stream",
+        "dimension": dimension,
+        "spacing": DP,
+        "gravity": (0.0, -9.81, *zero),
+        "time": {"end": 5.0, "frame_rate": 10.0},
+        "numerics": {"sound_speed": 30.0},
+        "fluids": {"water": {"shape": water, "density": 1000.0, "velocity": (speed, 0.0, *zero)}},
+        "boundaries": {"tank": {"shape": tank, "side": "outside", "open": sides}},
+        "open_boundaries": {
+            "inlet": end(0.0, 1.0, **(driven if speed else {"type": "pressure"})),
+            "outlet": end(2.0, -1.0, type="pressure"),
+        },
+    }
+    return Scene.model_validate(data | changes)

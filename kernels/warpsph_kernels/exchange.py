@@ -13,8 +13,13 @@ import warp as wp
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.cells import REMOVED
 from warpsph_kernels.fluid import FluidOptions
-from warpsph_kernels.open_boundary import make_across, make_nearest_station, make_patch_struct
 from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.patch import (
+    make_across,
+    make_below_level,
+    make_nearest_station,
+    make_patch_struct,
+)
 
 ENTERED, LEFT, REMOVED_BEHIND = range(3)
 """What can happen to a particle at a patch when lists are made: it enters the domain, leaves it into the buffer, or
@@ -44,7 +49,7 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
     pair = wp.types.vector(2, real)
     patch_type, constants_type = make_patch_struct(options), make_constants_struct(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
-    across = make_across(options)
+    across, below_level = make_across(options), make_below_level(options)
     nearest_station = make_nearest_station(options)
     _, unpack = make_packing(arithmetic)
     module = options.module_of("exchange")
@@ -70,17 +75,19 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
     ):
         """One fluid particle: its new tag, what happens to it (EVENTS k + event at patch k, else -1), and whether a
         particle takes its place at the far end of the buffer that it leaves inwards. `imposed`: velocity [m/s] and
-        pressure on the patches."""
+        pressure on the patches. What comes over an inlet above its water level is carried back by the buffer, and has
+        no successor there."""
         i = offset + wp.tid()
         x = listed_position[i]
         k = tag[i]
         happens = int(-1)
         born = int(0)
         if k >= 0:
-            depth = wp.dot(separation(x, patches[k].center, c.period), patches[k].normal)
+            way = separation(x, patches[k].center, c.period)
+            depth = wp.dot(way, patches[k].normal)
             if depth >= real(0.0):
                 tag[i] = -1
-                born = 1
+                born = wp.where(below_level(patches[k], way) > real(0.0), 1, 0)
                 happens = wp.static(EVENTS) * k + wp.static(ENTERED)
             elif depth < -patches[k].length:
                 happens = wp.static(EVENTS) * k + wp.static(REMOVED_BEHIND)
@@ -92,7 +99,8 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
                 behind = depth < real(0.0) and depth >= -patch.length
                 s = across(patch, away)
                 if happens < 0 and behind and on_patch(patch, s, margin):
-                    if wp.dot(unpack(imposed[nearest_station(patch, s)]), patch.normal) < real(0.0):
+                    speed = wp.dot(unpack(imposed[nearest_station(patch, s)]), patch.normal)
+                    if speed < real(0.0) or below_level(patch, away) < real(0.0):
                         tag[i] = j
                         happens = wp.static(EVENTS) * j + wp.static(LEFT)
         event[i] = happens

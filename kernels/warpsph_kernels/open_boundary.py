@@ -14,6 +14,7 @@ from warpsph_kernels.cells import make_cell_functions, make_grid_struct
 from warpsph_kernels.channel_fit import fit_types, make_fit
 from warpsph_kernels.fluid import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
+from warpsph_kernels.patch import FULL, make_across, make_below_level, make_patch_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
 
@@ -21,6 +22,8 @@ VELOCITY, PRESSURE, ZERO_GRADIENT, NON_REFLECTING = range(4)
 """Kinds of open boundaries."""
 SMALLEST_COVERAGE = 0.25
 """Part of the support of a station that fluid fills, from which on more than a mean is fitted."""
+COVERED_DEPTH = 1.6
+"""Depth below a surface, in smoothing lengths, from which on a particle has its full coverage."""
 NEWTON_STEPS = 4
 """From a pressure to its density: the first guess is off by a few per cent, and each step squares the error. What is
 out of all range is left to what stops such a run."""
@@ -37,76 +40,6 @@ class OpenBoundaryKernels(NamedTuple):
     hold_motion: Any
     hold_density: Any
     cover: Any
-
-
-@cache
-def make_patch_struct(options: FluidOptions) -> Any:
-    """Return the struct of a patch.
-
-    In run coordinates [m]: center, normal and two directions across it (the second zero in 2D), half lengths across (of
-    a disc the radius), length of the buffer, `back` from the interface to the far end; numbers and cell edges of its
-    stations, and the first of them; reference pressure [Pa], relaxation [1], averaging time [s].
-    """
-    arithmetic = options.arithmetic
-    real, vector = arithmetic.real, arithmetic.vector
-    pair = wp.types.vector(2, real)
-    counts = wp.types.vector(2, wp.int32)
-
-    class OpenPatch:
-        pass
-
-    OpenPatch.__annotations__ = {
-        "center": vector,
-        "normal": vector,
-        "first": vector,
-        "second": vector,
-        "half": pair,
-        "length": real,
-        "back": arithmetic.point,
-        "cell": pair,
-        "counts": counts,
-        "first_station": wp.int32,
-        "is_disc": wp.int32,
-        "kind": wp.int32,
-        "pressure": real,
-        "relaxation": real,
-        "averaging_time": real,
-        "area": real,
-    }
-    return wp.struct(OpenPatch)
-
-
-@cache
-def make_across(options: FluidOptions) -> Any:
-    """Return the device function `across(patch, away) -> pair`: coordinates across a patch of a way from its center."""
-    vector = options.arithmetic.vector
-    pair = wp.types.vector(2, options.arithmetic.real)
-    patch_type = make_patch_struct(options)
-
-    def across(patch: patch_type, away: vector):
-        s = pair()
-        s[0] = wp.dot(away, patch.first)
-        s[1] = wp.dot(away, patch.second)
-        return s
-
-    return wp.func(across)
-
-
-@cache
-def make_nearest_station(options: FluidOptions) -> Any:
-    """Return the device function `nearest_station(patch, s) -> int`: the station nearest to coordinates across."""
-    dim, real = options.arithmetic.dimension, options.arithmetic.real
-    pair, counts_type = wp.types.vector(2, real), wp.types.vector(2, wp.int32)
-    patch_type = make_patch_struct(options)
-
-    def nearest_station(patch: patch_type, s: pair):
-        at = counts_type()
-        for k in range(wp.static(dim - 1)):
-            cell = int(wp.floor((s[k] + patch.half[k]) / patch.cell[k]))
-            at[k] = wp.clamp(cell, 0, patch.counts[k] - 1)
-        return patch.first_station + at[0] * patch.counts[1] + at[1]
-
-    return wp.func(nearest_station)
 
 
 @cache
@@ -129,7 +62,7 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     fit = make_fit(arithmetic)
     system, columns = fit_types(arithmetic)
     rows = 3 ** (dim - 1)
-    across = make_across(options)
+    across, below_level = make_across(options), make_below_level(options)
     module = options.module_of("open_boundary")
 
     @wp.func
@@ -173,13 +106,15 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         velocity_volume: wp.array(dtype=record),
         inside: wp.array(dtype=record),
         slope: wp.array(dtype=real),
+        filling: wp.array(dtype=real),
     ):
         """One station: velocity and pressure of the fluid inside, the pressure carried on to the patch.
 
         `place` lies one smoothing length inside. There a polynomial, linear along the normal and quadratic across it,
         is fitted to the particles of the domain, without those of buffers, by least squares with the weights V_b W_b
         (moving least squares, Lancaster & Salkauskas 1981): exact for the parabola of a channel, which a linear one
-        would make lower, and what enters would brake the flow. `slope` is dp/dn. The cells are those of the last lists:
+        would make lower, and what enters would brake the flow. `slope` is dp/dn, `filling` the part of the support that
+        fluid fills. The cells are those of the last lists:
         no particle has moved more than half the skin since.
         """
         i = offset + wp.tid()
@@ -220,22 +155,24 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
                 found[k] = right[0, k] / moments[0, 0]
         inside[i] = found
         slope[i] = dp
+        filling[i] = moments[0, 0]
 
     @wp.kernel(module=module, enable_backward=False)
     def average(
         offset: int,
         patches: wp.array(dtype=patch_type),
         weight: wp.array(dtype=real),
+        hydrostatic: wp.array(dtype=real),
         inside: wp.array(dtype=record),
         mean_pressure: wp.array(dtype=real),
     ):
-        """One patch: mean pressure of the fluid inside over its stations [Pa]."""
+        """One patch: mean pressure of the fluid inside over its stations, beside that of a water level [Pa]."""
         k = offset + wp.tid()
         patch = patches[k]
         total = real(0.0)
         for j in range(patch.counts[0] * patch.counts[1]):
             i = patch.first_station + j
-            total += weight[i] * inside[i][wp.static(dim)]
+            total += weight[i] * (inside[i][wp.static(dim)] - hydrostatic[i])
         mean_pressure[k] = total / patch.area
 
     @wp.kernel(module=module, enable_backward=False)
@@ -247,6 +184,9 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         patch_of: wp.array(dtype=wp.int32),
         prescribed: wp.array(dtype=record),
         inside: wp.array(dtype=record),
+        filling: wp.array(dtype=real),
+        lower: wp.array(dtype=wp.int32),
+        hydrostatic: wp.array(dtype=real),
         mean_pressure: wp.array(dtype=real),
         undisturbed: wp.array(dtype=vector),
         imposed: wp.array(dtype=record),
@@ -256,12 +196,18 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         Fluid enters along the normal unless its velocity is prescribed. non_reflecting: with u along the normal and
         the undisturbed u_0, p_0, the wave that leaves is J = p - p_0 - rho c (u - u_0), and the one that enters is
         nought, so that p = p_0 + J / 2 and u = u_0 - J / (2 rho c) (Lastiwka, Basa & Quinlan 2009); u_0 is a running
-        mean (Negi, Ramachandran & Haftu 2020).
+        mean (Negi, Ramachandran & Haftu 2020). `lower`: the next station below in a section with a water level, else
+        -1. A station above the surface takes the velocity of the highest one in fluid: a particle at the surface lies
+        between the two. The pressure of a level is `hydrostatic`, negative above it; where the velocity is prescribed
+        the fluid inside may stand higher or lower, and its mean is kept.
         """
         i = offset + wp.tid()
         k = patch_of[i]
         patch = patches[k]
-        v, p = unpack(inside[i]), inside[i][wp.static(dim)]
+        wet = i
+        while filling[wet] < real(wp.static(SMALLEST_COVERAGE)) and lower[wet] >= 0:
+            wet = lower[wet]
+        v, p = unpack(inside[wet]), inside[i][wp.static(dim)]
         step = real(clock[0])
         if patch.kind == wp.static(VELOCITY):
             v = unpack(prescribed[i])
@@ -283,6 +229,10 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
             u = wp.dot(v, patch.normal)
             if u > real(0.0):
                 v = u * patch.normal
+        if patch.level < real(wp.static(FULL)):
+            p = hydrostatic[i]
+            if patch.kind == wp.static(VELOCITY):
+                p += mean_pressure[k]
         imposed[i] = pack(v, p)
 
     @wp.kernel(module=module, enable_backward=False)
@@ -320,7 +270,8 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         density_deviation: wp.array(dtype=real),
         position_pressure: wp.array(dtype=record),
     ):
-        """One particle of a buffer: velocity, pressure and density, linear between stations and along the normal."""
+        """One particle of a buffer: velocity, pressure and density, linear between stations and along the normal; with
+        a water level the pressure does not change along the normal, and is nought above the surface."""
         i = tagged[offset + wp.tid()]
         patch = patches[tag[i]]
         x = unpack(position_pressure[i])
@@ -343,6 +294,8 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
             values += w * imposed[station]
             steepness += w * slope[station]
         p = values[wp.static(dim)] + steepness * wp.dot(away, patch.normal)
+        if patch.level < real(wp.static(FULL)):
+            p = wp.max(values[wp.static(dim)], real(0.0))
         deviation = deviation_of(p, c)
         density_deviation[i] = deviation
         velocity_volume[i] = pack(unpack(values), c.mass / (c.rest_density + deviation))
@@ -376,9 +329,23 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         density_deviation[i] = position_density[i][wp.static(dim)]
 
     @wp.kernel(module=module, enable_backward=False)
-    def cover(offset: int, tagged: wp.array(dtype=wp.int32), coverage: wp.array(dtype=real)):
-        """One particle of a buffer: the fluid goes on behind it, so that it belongs to no surface."""
-        coverage[tagged[offset + wp.tid()]] = real(1.0)
+    def cover(
+        offset: int,
+        c: constants_type,
+        patches: wp.array(dtype=patch_type),
+        tagged: wp.array(dtype=wp.int32),
+        tag: wp.array(dtype=wp.int32),
+        position_pressure: wp.array(dtype=record),
+        coverage: wp.array(dtype=real),
+    ):
+        """One particle of a buffer: the fluid goes on behind it, so that it belongs to no surface but that at the level
+        of its patch, where it has the coverage of a particle in a half-space of fluid, to 0.04: one half at the
+        surface, one from 1.6 h below."""
+        i = tagged[offset + wp.tid()]
+        patch = patches[tag[i]]
+        s = below_level(patch, separation(unpack(position_pressure[i]), patch.center, c.period))
+        part = wp.clamp(s * c.inverse_h / real(wp.static(COVERED_DEPTH)), real(0.0), real(1.0))
+        coverage[i] = real(0.5) + real(0.5) * part * part * (real(3.0) - real(2.0) * part)
 
     return OpenBoundaryKernels(
         find_inside,

@@ -14,8 +14,8 @@ from warpsph_kernels.open_boundary import (
     VELOCITY,
     ZERO_GRADIENT,
     make_open_boundary_kernels,
-    make_patch_struct,
 )
+from warpsph_kernels.patch import FULL, make_patch_struct
 
 from warpsph.particles.neighbours import NeighbourSearch
 from warpsph.particles.state import HostTable
@@ -148,6 +148,7 @@ class OpenBoundaryModel:
         self._inside = wp.zeros(self.stations, dtype=arithmetic.record, device=device)
         self.imposed = wp.zeros(self.stations, dtype=arithmetic.record, device=device)
         self._slope = wp.zeros(self.stations, dtype=arithmetic.real, device=device)
+        self._filling = wp.zeros(self.stations, dtype=arithmetic.real, device=device)
         self.undisturbed = wp.zeros(self.stations, dtype=arithmetic.vector, device=device)
         self._mean_pressure = wp.zeros(len(self.patches), dtype=arithmetic.real, device=device)
         self.flux = wp.zeros(len(self.patches), dtype=wp.float64, device=device)
@@ -170,6 +171,13 @@ class OpenBoundaryModel:
         self._place = a.vectors(np.concatenate(inside) - a.space.origin)
         owners = np.concatenate([np.full(len(p.stations), k) for k, p in enumerate(self.patches)])
         self._patch_of = wp.array(owners, dtype=wp.int32, device=a.launcher.device)
+        lower = [
+            np.where(patch.lower >= 0, patch.lower + span.start, -1)
+            for patch, span in zip(self.patches, self._spans, strict=True)
+        ]
+        self._lower = wp.array(np.concatenate(lower), dtype=wp.int32, device=a.launcher.device)
+        pressures = np.concatenate([_hydrostatic(patch, a.constants) for patch in self.patches])
+        self._hydrostatic = wp.array(pressures, dtype=a.options.arithmetic.real, device=a.launcher.device)
         weights = np.concatenate([patch.weights for patch in self.patches])
         self._weight = wp.array(weights, dtype=a.options.arithmetic.real, device=a.launcher.device)
 
@@ -190,9 +198,16 @@ class OpenBoundaryModel:
             state.velocity_volume,
             self._inside,
             self._slope,
+            self._filling,
         )
         self._average = bind(
-            "look inside", kernels.average, patches, self._weight, self._inside, self._mean_pressure
+            "look inside",
+            kernels.average,
+            patches,
+            self._weight,
+            self._hydrostatic,
+            self._inside,
+            self._mean_pressure,
         )
         self._decide = bind(
             "impose",
@@ -203,6 +218,9 @@ class OpenBoundaryModel:
             self._patch_of,
             self._prescribed_array,
             self._inside,
+            self._filling,
+            self._lower,
+            self._hydrostatic,
             self._mean_pressure,
             self.undisturbed,
             self.imposed,
@@ -254,7 +272,10 @@ class OpenBoundaryModel:
             state.density_deviation,
         )
         if order:
-            self._cover_buffers = bind("surface", kernels.cover, self._tagged, order.coverage)
+            places = (self._tagged, self.tag, a.scratch.position_pressure)
+            self._cover_buffers = bind(
+                "surface", kernels.cover, a.constants, self.device_patches, *places, order.coverage
+            )
         of_exchange = make_exchange_kernels(a.options)
         self._flag = bind("exchange", of_exchange.flag_tagged, self.tag, self.flag)
         self._gather = bind("exchange", of_exchange.gather_flagged, self.flag, self.ends, self._tagged)
@@ -270,6 +291,14 @@ def _spans(patches: Sequence[Patch]) -> list[slice]:
     """Stations of each patch among all."""
     ends = np.cumsum([len(patch.stations) for patch in patches])
     return [slice(int(end) - len(patch.stations), int(end)) for patch, end in zip(patches, ends, strict=True)]
+
+
+def _hydrostatic(patch: Patch, constants: Any) -> np.ndarray:
+    """Pressure (s,) [Pa] of a water level at the stations of a patch, negative above it; nought without one."""
+    if not patch.has_level:
+        return np.zeros(len(patch.stations))
+    depth = patch.below_level(patch.points(patch.stations))
+    return float(constants.rest_density) * float(np.linalg.norm(constants.gravity)) * depth
 
 
 def _device_patch(
@@ -298,4 +327,6 @@ def _device_patch(
     struct.pressure, struct.area = pressure, patch.area
     struct.relaxation = getattr(boundary, "relaxation", 0.0)
     struct.averaging_time = crossing if time == "auto" else time
+    struct.up = vector(*patch.up)
+    struct.level = patch.level if patch.has_level else FULL
     return struct

@@ -50,6 +50,7 @@ def buffer_problems(
     tree = cKDTree(solid) if len(solid) else None
     for patch in patches:
         key = f"open_boundaries.{patch.name}.shape"
+        yield from _level_problems(patch, f"open_boundaries.{patch.name}.level")
         points = fluids[fluid_of(scene, patch)]
         if not patch.behind(points, 0.0, period_of(scene)).any():
             message = "no particle of this spacing has its centre behind the patch"
@@ -61,6 +62,16 @@ def buffer_problems(
         if first.behind(inside, 0.0, period_of(scene)).any():
             message = f"its buffer, {second.length:g} m long, lies in that of {first.name!r}"
             yield Problem.at(f"open_boundaries.{second.name}.shape", message, "patches side by side or apart")
+
+
+def _level_problems(patch: Patch, key: str) -> Iterator[Problem]:
+    """A water level that does not cross its patch, whose highest point lies `top` [m] over its center."""
+    rises = np.abs(patch.axes[:, 1:].T @ patch.up) * patch.half
+    top = float(np.linalg.norm(rises) if patch.is_disc else rises.sum())
+    if patch.has_level and not -top < patch.level <= top:
+        middle = float(patch.center @ patch.up)
+        allowed = f"above {middle - top:g} m, up to {middle + top:g} m"
+        yield Problem.at(key, "the water level lies off the patch", allowed, middle + patch.level)
 
 
 def _wall_problems(scene: Scene, patch: Patch, tree: cKDTree, key: str) -> Iterator[Problem]:

@@ -51,7 +51,7 @@ class PatchLaw:
         """Whether the values depend on the time."""
         if boundary.type == "velocity":
             self._values = self._velocity(boundary.velocity, base_directory)
-        elif boundary.type == "pressure":
+        elif boundary.type == "pressure" and boundary.pressure is not None:
             self._values = self._pressure(boundary.pressure)
         self.changes = self.changes or self._factor is not None
         self.prescribes_velocity = boundary.type == "velocity"

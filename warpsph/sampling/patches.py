@@ -11,7 +11,7 @@ import numpy as np
 from warpsph.sampling.axes import same_axes
 from warpsph.sampling.lattice import TIE, Lattice
 from warpsph.sampling.regions import Period
-from warpsph.scene.open_boundaries import PatchShape
+from warpsph.scene.open_boundaries import OpenBoundary
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
 
@@ -24,7 +24,8 @@ class Patch:
     """A patch and its buffer.
 
     axes: (dimension, dimension), columns: the normal into the domain, then the directions across it; half: half lengths
-    across [m], of a disc its radius twice; length: of the buffer [m]; counts: stations along each direction across.
+    across [m], of a disc its radius twice; length: of the buffer [m]; counts: stations along each direction across; up:
+    direction against gravity, and level: height of the water level over the center [m], where one is given.
     """
 
     name: str
@@ -34,6 +35,17 @@ class Patch:
     is_disc: bool
     length: float
     counts: tuple[int, ...]
+    up: np.ndarray
+    level: float
+
+    @property
+    def has_level(self) -> bool:
+        """Whether its section is filled to a water level only."""
+        return math.isfinite(self.level)
+
+    def below_level(self, points: np.ndarray) -> np.ndarray:
+        """Depths (n,) [m] of points (n, dimension) below the water level; infinite where none is given."""
+        return self.level - (points - self.center) @ self.up
 
     def coordinates(self, points: np.ndarray, period: Period | None = None) -> np.ndarray:
         """Coordinates (n, dimension) [m] of points (n, dimension): depth inside of the patch, then those across it."""
@@ -55,8 +67,8 @@ class Patch:
 
     @property
     def area(self) -> float:
-        """Area [m2], in 2D length [m]."""
-        return math.pi * float(self.half[0]) ** 2 if self.is_disc else float(np.prod(2.0 * self.half))
+        """Area [m2], in 2D length [m]; that below its water level."""
+        return float(self.weights.sum())
 
     @property
     def cell(self) -> np.ndarray:
@@ -70,13 +82,28 @@ class Patch:
 
     @property
     def weights(self) -> np.ndarray:
-        """Area (s,) of each station's cell that lies on the patch [m2; m in 2D]; together that of the patch."""
+        """Area (s,) of each station's cell that lies on the patch, and below its water level [m2; m in 2D]."""
         if not self.is_disc:
-            return np.full(math.prod(self.counts), float(np.prod(self.cell)))
+            return self._wet_shares() * float(np.prod(self.cell))
         inside = self.covers(self._grid(_SUBDIVISION), 0.0).astype(float)
         fine = [n for count in self.counts for n in (count, _SUBDIVISION)]
         share = inside.reshape(fine).mean(axis=(1, 3)).ravel()
-        return share * self.area / share.sum()
+        return self._wet_shares() * share * math.pi * float(self.half[0]) ** 2 / share.sum()
+
+    @property
+    def lower(self) -> np.ndarray:
+        """Of each station (s,) the next one below it, of the lowest -1; without a water level -1 of all."""
+        index = np.arange(math.prod(self.counts)).reshape(self.counts)
+        below = np.full_like(index, -1)
+        if self.has_level:
+            rise = self.axes[:, 1:].T @ self.up
+            k = int(np.argmax(np.abs(rise)))
+            index, filled = np.moveaxis(index, k, 0), np.moveaxis(below, k, 0)
+            if rise[k] > 0.0:
+                filled[1:] = index[:-1]
+            else:
+                filled[:-1] = index[1:]
+        return below.ravel()
 
     @property
     def stand_ins(self) -> np.ndarray:
@@ -90,6 +117,14 @@ class Patch:
         """Places (n, dimension) [m] of coordinates across the patch, at a depth [m] inside."""
         return self.center + depth * self.axes[:, 0] + across @ self.axes[:, 1:].T
 
+    def _wet_shares(self) -> np.ndarray:
+        """Part (s,) of the height of each station's cell that lies below the water level."""
+        if not self.has_level:
+            return np.ones(math.prod(self.counts))
+        height = float(np.abs(self.axes[:, 1:].T @ self.up) @ self.cell)
+        depth = self.below_level(self.points(self.stations))
+        return np.clip(0.5 + depth / height, 0.0, 1.0)
+
     def _grid(self, parts: int) -> np.ndarray:
         lines = [
             half * ((2.0 * np.arange(parts * count) + 1.0) / (parts * count) - 1.0)
@@ -101,7 +136,7 @@ class Patch:
 def patches_of(scene: Scene) -> list[Patch]:
     """The patches of a scene in its order."""
     return [
-        _patch(name, boundary.shape, scene.spacing, buffer_length(scene))
+        _patch(name, boundary, scene.gravity, scene.spacing, buffer_length(scene))
         for name, boundary in scene.open_boundaries.items()
     ]
 
@@ -111,7 +146,10 @@ def buffer_length(scene: Scene) -> float:
     return (math.ceil(scene.search_radius / scene.spacing - TIE) + 1) * scene.spacing
 
 
-def _patch(name: str, shape: PatchShape, spacing: float, length: float) -> Patch:
+def _patch(
+    name: str, boundary: OpenBoundary, gravity: tuple[float, ...], spacing: float, length: float
+) -> Patch:
+    shape, center = boundary.shape, np.array(boundary.shape.center)
     normal = np.array(shape.normal) / np.linalg.norm(shape.normal)
     if shape.width is not None:
         half = np.array([0.5 * shape.width])
@@ -121,7 +159,12 @@ def _patch(name: str, shape: PatchShape, spacing: float, length: float) -> Patch
         half = np.full(2, float(shape.radius or 0.0))
     counts = tuple(max(round(float(2.0 * h) / spacing), 1) for h in half)
     axes = _frame(normal, shape.along)
-    return Patch(name, np.array(shape.center), axes, half, shape.radius is not None, length, counts)
+    up, level = np.zeros(len(center)), math.inf
+    elevation = getattr(boundary, "level", None)
+    if elevation is not None:
+        up = -np.array(gravity) / np.linalg.norm(gravity)
+        level = elevation - float(center @ up)
+    return Patch(name, center, axes, half, shape.radius is not None, length, counts, up, level)
 
 
 def _frame(normal: np.ndarray, along: tuple[float, ...] | None) -> np.ndarray:
@@ -140,8 +183,8 @@ def _first_axis_across(normal: np.ndarray) -> np.ndarray:
 
 
 def buffer_points(patch: Patch, lattice: Lattice) -> np.ndarray:
-    """Particles (n, dimension) [m] that fill a buffer: on the lattice of its fluid if that lies along the patch, else
-    on one of its own."""
+    """Particles (n, dimension) [m] that fill a buffer, up to its water level: on the lattice of its fluid if that lies
+    along the patch, else on one of its own."""
     dp = lattice.spacing
     if not same_axes(patch.axes, lattice.rotation):
         corner = patch.axes.T @ patch.center - np.concatenate([[0.0], 0.5 * _whole(patch, dp)])
@@ -157,6 +200,7 @@ def buffer_points(patch: Patch, lattice: Lattice) -> np.ndarray:
     at = patch.coordinates(points)
     tie = TIE * dp
     inside = (at[:, 0] <= -tie) & (at[:, 0] > -patch.length - tie) & patch.covers(at[:, 1:], -tie)
+    inside &= patch.below_level(points) > tie
     return points[inside]
 
 

@@ -134,19 +134,41 @@ class _Driven(_OpenBoundary):
 
 
 class VelocityBoundary(_Driven):
-    """The velocity is prescribed; the pressure is that of the fluid inside."""
+    """The velocity is prescribed; the pressure is that of the fluid inside, or that of a water level."""
 
     type: Literal["velocity"] = "velocity"
     velocity: PatchVelocity
     """Velocity on the patch."""
+    level: Real | None = None
+    """Height of a free surface in its section, as a coordinate against gravity [m]: the pressure is hydrostatic below,
+    and nothing enters above; null: the section is full. Default: null."""
+
+    @model_validator(mode="after")
+    def _parabola_is_full(self) -> Self:
+        if self.level is not None and isinstance(self.velocity, ParabolicVelocity):
+            raise ValueError(
+                "a parabola is zero at the edges of a full section, which one with a level is not"
+            )
+        return self
 
 
 class PressureBoundary(_Driven):
     """The pressure is prescribed; the velocity is that of the fluid inside, along the normal where fluid enters."""
 
     type: Literal["pressure"] = "pressure"
-    pressure: Real | Expression
-    """Pressure [Pa]: a number, or an expression in x, y, z [m] and t [s]."""
+    pressure: Real | Expression | None = None
+    """Pressure [Pa]: a number, or an expression in x, y, z [m] and t [s]; null: that of the level. Default: null."""
+    level: Real | None = None
+    """Height of a free surface to hold, as a coordinate against gravity [m]: the pressure is hydrostatic below it and
+    nought above; null: there is none. Default: null."""
+
+    @model_validator(mode="after")
+    def _one_pressure(self) -> Self:
+        if (self.pressure is None) == (self.level is None):
+            raise ValueError("it needs its pressure, or its level, and not both")
+        if self.level is not None and (self.history is not None or self.ramp > 0.0):
+            raise ValueError("history and ramp have no effect on a level")
+        return self
 
 
 class ZeroGradientBoundary(_OpenBoundary):

@@ -31,6 +31,7 @@ def open_boundary_problems(scene: Scene, names: DeclaredNames) -> Iterator[Probl
         yield from _extent_problems(boundary.shape, scene.dimension, f"{key}.shape")
         if len(boundary.shape.normal) == scene.dimension:
             yield from _period_problems(scene, boundary.shape, f"{key}.shape")
+            yield from _level_problems(scene, boundary, key)
         yield from _formula_problems(scene.dimension, boundary, key)
     if scene.open_boundaries and scene.numerics.density == "summation":
         message = "the sum over the neighbours ends at the far end of a buffer"
@@ -80,6 +81,24 @@ def _period_problems(scene: Scene, shape: PatchShape, key: str) -> Iterator[Prob
         elif not low <= shape.center[k] <= high:
             message = f"it lies out of the period in {axis}"
             yield Problem.at(f"{key}.center", message, f"{low:g} to {high:g} m", list(shape.center))
+
+
+def _level_problems(scene: Scene, boundary: OpenBoundary, key: str) -> Iterator[Problem]:
+    """A water level without gravity, or on a patch that is not upright."""
+    level = getattr(boundary, "level", None)
+    if level is None or len(scene.gravity) != scene.dimension:
+        return
+    if not any(scene.gravity):
+        message = "without gravity there is no water level"
+        yield Problem.at(f"{key}.level", message, "a scene with gravity, or no level", level)
+        return
+    up = -np.array(scene.gravity) / np.linalg.norm(scene.gravity)
+    normal = np.array(boundary.shape.normal) / np.linalg.norm(boundary.shape.normal)
+    if abs(normal @ up) > _PARALLEL:
+        message = "a patch with a water level has to be upright"
+        yield Problem.at(
+            f"{key}.shape.normal", message, "a normal across gravity", list(boundary.shape.normal)
+        )
 
 
 def _formula_problems(dimension: int, boundary: OpenBoundary, key: str) -> Iterator[Problem]:
