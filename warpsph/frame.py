@@ -19,6 +19,7 @@ FIELD_UNITS: dict[str, str] = {
     "wall_shear_stress": "Pa",
     "vorticity": "1/s",
     "age": "s",
+    "patch": "1",
     "displacement": "m",
     "reaction": "N",
     "cauchy_stress": "Pa",

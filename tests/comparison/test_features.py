@@ -69,6 +69,10 @@ def test_integral_and_mean_over_the_window() -> None:
     assert row_of(2.0 * TIMES, feature="mean", window=[1.0, 2.0], value=3.0).value == pytest.approx(3.0)
 
 
+def test_change_is_between_the_ends_of_the_window() -> None:
+    assert row_of(TIMES**2, feature="change", window=[1.0, 2.0], value=3.0).value == pytest.approx(3.0)
+
+
 def test_deviation_of_a_swing_is_its_amplitude_over_the_root_of_two() -> None:
     """Over whole periods, up to the end point that is there twice."""
     swing = 5.0 + 0.1 * np.sin(2.0 * np.pi * TIMES)

@@ -10,6 +10,7 @@ from open_boundary_builders import DP, channel, pipe
 from scipy.spatial import cKDTree
 
 from warpsph.particles.state import host_view
+from warpsph.probes import make_probe
 from warpsph.scene import Scene
 from warpsph.solver.simulation import Simulation
 
@@ -133,6 +134,40 @@ def test_a_particle_that_is_pushed_back_into_an_inlet_has_no_second_successor() 
             assert sim.sets == before
     assert len(first) == 10
     assert system.inflows()["inlet"] == passed
+
+
+def balance(is_holed: bool) -> tuple[np.ndarray, int]:
+    """What the balance of a channel under pressure says after 1 s, and how many particles are beside the channel. In a
+    hole of the lower plate three particles have room."""
+    data = channel(outlet={"type": "pressure", "pressure": 1000.0}).model_dump()
+    boxes = [((-1.5, 1.0), (3.5, 1.4)), *([((-1.5, -0.4), (0.8, 0.0)), ((1.1, -0.4), (3.5, 0.0))])]
+    if not is_holed:
+        boxes[1:] = [((-1.5, -0.4), (3.5, 0.0))]
+    shapes = [{"type": "box", "min": low, "max": high} for low, high in boxes]
+    data["boundaries"]["plates"]["shape"] = {"type": "union", "shapes": shapes}
+    region = {"min": (-1.0, 0.0), "max": (3.0, 1.0)}
+    data["probes"] = {"balance": {"type": "volume_balance", "region": region}}
+    scene = Scene.model_validate(data)
+    sim, probe = (
+        Simulation(scene, device="cpu"),
+        make_probe("balance", scene.probes["balance"], scene),
+    )
+    probe.start(sim.frame(probe.needs["fluid"]))
+    sim.advance(1.0)
+    frame = sim.frame(probe.needs["fluid"])
+    height = frame.set_named("water").fields["position"][:, 1]
+    return np.array(probe.evaluate(frame)), int(np.sum((height < 0.0) | (height > 1.0)))
+
+
+def test_a_hole_in_a_wall_shows_in_the_balance() -> None:
+    """Counted in particles the balance is exact; by the flux, to a layer at each end."""
+    (_, _, _, flux_error, counted_error), beside = balance(is_holed=False)
+    assert (beside, counted_error) == (0, 0.0)
+    assert abs(flux_error) < 2.0 * 1000.0 * DP
+    (flux, _, gained, _, counted_error), beside = balance(is_holed=True)
+    assert beside > 10
+    assert counted_error == pytest.approx(-beside * 1000.0 * DP**2, rel=1e-6)
+    assert flux - gained > 0.5 * beside * 1000.0 * DP**2
 
 
 def test_a_buffer_on_a_lattice_of_its_own_brings_in_that_lattice() -> None:

@@ -34,6 +34,10 @@ def problems(make: Any) -> dict[str, str]:
 
 
 INLET = "open_boundaries.inlet"
+BALANCE = {
+    "type": "volume_balance",
+    "walls": [{"structure": "plate", "start": [0.0, 0.0], "end": [2.0, 0.0]}],
+}
 
 
 @pytest.mark.parametrize(
@@ -53,6 +57,8 @@ INLET = "open_boundaries.inlet"
         ),
         ({"numerics.density": "summation"}, "numerics.density", "ends at the far end"),
         ({"probes": {"q": {"type": "flux", "patch": "inlte"}}}, "probes.q.patch", "did you mean 'inlet'"),
+        ({"probes": {"q": BALANCE}}, "probes.q.walls.0.structure", "there is no structure 'plate'"),
+        ({"probes": {"q": BALANCE}, "open_boundaries": {}}, "probes.q.type", "no open boundary"),
     ],
 )
 def test_what_is_wrong_is_said_at_its_place(changes: dict[str, Any], key: str, words: str) -> None:

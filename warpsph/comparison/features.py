@@ -199,6 +199,7 @@ FEATURES: Mapping[str, Callable[[np.ndarray, np.ndarray], float]] = {
     "minimum_time": lambda time, column: maximum_time(time, -column),
     "deviation": lambda _, column: float(column.std()),
     "mean": lambda time, column: float(np.trapezoid(column, time) / (time[-1] - time[0])),
+    "change": lambda _, column: float(column[-1] - column[0]),
     "integral": lambda time, column: float(np.trapezoid(column, time)),
     "amplitude": lambda _, column: 0.5 * float(column.max() - column.min()),
     "centre": lambda _, column: 0.5 * float(column.max() + column.min()),

@@ -20,6 +20,7 @@ from warpsph.probes.rotation import RotationProbe
 from warpsph.probes.structure_energy import StructureEnergyProbe
 from warpsph.probes.voids import VoidsProbe
 from warpsph.probes.volume import VolumeProbe
+from warpsph.probes.volume_balance import VolumeBalanceProbe
 from warpsph.probes.wall_pressure import WallPressureProbe
 from warpsph.probes.water_level import WaterLevelProbe
 from warpsph.scene.probes import Probe as ProbeSpec
@@ -44,6 +45,7 @@ PROBES: dict[str, Callable[[str, Any, Scene], Probe]] = {
     "structure_energy": StructureEnergyProbe,
     "momentum": MomentumProbe,
     "flux": FluxProbe,
+    "volume_balance": VolumeBalanceProbe,
 }
 
 

@@ -18,7 +18,7 @@ from warpsph.scene.structure_probes import (
     RotationProbe,
     StructureEnergyProbe,
 )
-from warpsph.scene.types import AXES, Axis, Integer, Name, PositiveReal, Real, Vector
+from warpsph.scene.types import AXES, Axis, Integer, Name, PositiveReal, Real, SceneModel, Vector
 
 PointField = Literal["pressure", "velocity", "density"]
 
@@ -279,6 +279,43 @@ class FluxProbe(ProbeModel):
         return (f"flux[{rate}]", f"mass[{unit}]", f"counted_mass[{unit}]")
 
 
+class WallLine(SceneModel):
+    """A straight line at rest on the surface of a structure, in two dimensions."""
+
+    structure: Name
+    """The structure."""
+
+    start: Vector
+    """Its first point [m]."""
+
+    end: Vector
+    """Its last point [m]; from the first one to this the fluid lies on the left."""
+
+
+class VolumeBalanceProbe(ProbeModel):
+    """Balance of the fluid between all open boundaries: mass that has entered, by the flux on the patches and counted
+    in particles, mass that the fluid has gained since the start, and the last less the first, by either. What leaves
+    through a hole of a wall is missing: it is lost in the kill box, or lies outside of the region.
+
+    With flexible walls also the volume that the fluid has gained since the start (sum of m/rho), the volume that the
+    walls have given to it, and the first less the second. Fluid in buffers does not count."""
+
+    type: Literal["volume_balance"] = "volume_balance"
+    region: Bounds | None = None
+    """Only fluid in this box counts; null: all. Default: null."""
+
+    walls: tuple[WallLine, ...] = ()
+    """The flexible part of the walls around the fluid: lines on the surfaces of structures, in two dimensions,
+    with the fluid on the left from start to end. Default: none."""
+
+    def quantities(self, dimension: int) -> tuple[str, ...]:
+        mass, volume = ("kg/m", "m2") if dimension == 2 else ("kg", "m3")
+        names = ("flux", "counted", "gained", "flux_error", "counted_error")
+        figures = tuple(f"{name}[{mass}]" for name in names)
+        of_walls = tuple(f"{name}[{volume}]" for name in ("volume", "enclosed", "walls_error"))
+        return figures + (of_walls if self.walls else ())
+
+
 Probe = Annotated[
     FrontProbe
     | ReachProbe
@@ -297,6 +334,7 @@ Probe = Annotated[
     | RigidBodyProbe
     | StructureEnergyProbe
     | MomentumProbe
-    | FluxProbe,
+    | FluxProbe
+    | VolumeBalanceProbe,
     Field(discriminator="type"),
 ]

@@ -29,6 +29,7 @@ Feature = Literal[
     "minimum_time",
     "mean",
     "deviation",
+    "change",
     "integral",
     "arrival",
     "first_peak",
@@ -216,7 +217,8 @@ class Figure(SceneModel):
 
     feature: Feature
     """maximum, minimum, mean or deviation, the standard one [unit of the column]; maximum_time and minimum_time, when
-    they are [s], between samples by a parabola; integral over time [unit s]; arrival: first time at which the column
+    they are [s], between samples by a parabola; change: last value less the first [unit of the column]; integral over
+    time [unit s]; arrival: first time at which the column
     reaches `threshold` [s]; first_peak: largest value from the arrival until the column has fallen below half of it,
     and first_peak_time, when that is [s]; period: mean time between upward passages of the mean value [s], frequency:
     one over it [1/s], and strouhal: frequency times length over speed, both of the probe of force coefficients that the

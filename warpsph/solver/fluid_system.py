@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -31,7 +32,7 @@ FIELDS = (
     *("position", "velocity", "density", "pressure", "volume", "mass", "force", "id"),
     *("vorticity", "free_surface", "viscous_force", "wall_shear_stress"),
 )
-OF_FLUIDS = ("density", "mass", "vorticity", "free_surface", "age")
+OF_FLUIDS = ("density", "mass", "vorticity", "free_surface", "age", "patch")
 OF_WALLS = ("force", "viscous_force", "wall_shear_stress")
 USUAL_FIELDS = ("position", "velocity", "density", "pressure", "mass")
 NOTABLE_MACH = 0.2
@@ -278,10 +279,12 @@ class FluidSystem:
     def _open_fields(self) -> dict[str, Callable[[], np.ndarray]]:
         """What makes the fields that fluid has between open boundaries, with zeros for walls."""
         opened, layout = self.parts.open_boundaries, self.parts.assembly.layout
-        ages = opened.model.own_arrays.get("age") if opened else None
-        if ages is None:
-            return {}
-        return {"age": lambda: np.pad(host_view(ages), (0, layout.total - len(ages)))}
+
+        def padded(array: wp.array) -> np.ndarray:
+            return np.pad(host_view(array), (0, layout.total - len(array)))
+
+        arrays = opened.model.own_arrays if opened else {}
+        return {name: partial(padded, array) for name, array in arrays.items()}
 
     def _of_walls(self, find: Callable[[WallParts, WallFields], np.ndarray]) -> np.ndarray:
         """Vectors that walls have, with zeros for all other particles."""

@@ -29,6 +29,7 @@ from warpsph.scene.probes import (
     RigidBodyProbe,
     RotationProbe,
     StructureEnergyProbe,
+    VolumeBalanceProbe,
     VolumeProbe,
     WallPressureProbe,
     WaterLevelProbe,
@@ -65,18 +66,36 @@ def probe_problems(scene: Scene, names: DeclaredNames) -> Iterator[Problem]:
             yield no_such_axis(f"{key}.axis", axis, scene.dimension)
         if isinstance(probe, WaterLevelProbe):
             yield from _gauge_problems(probe, scene, key)
-        if isinstance(probe, FluxProbe):
+        if isinstance(probe, FluxProbe | VolumeBalanceProbe):
             yield from _flux_problems(probe, names, key)
+        if isinstance(probe, VolumeBalanceProbe):
+            yield from _wall_line_problems(probe, scene, names, key)
         if isinstance(probe, PointProbe | LineProbe):
             yield from repeated_problems(f"{key}.fields", probe.fields)
 
 
-def _flux_problems(probe: FluxProbe, names: DeclaredNames, key: str) -> Iterator[Problem]:
+def _flux_problems(
+    probe: FluxProbe | VolumeBalanceProbe, names: DeclaredNames, key: str
+) -> Iterator[Problem]:
     if not names.open_boundaries:
         message = "nothing passes where the scene has no open boundary"
         yield Problem.at(f"{key}.type", message, "a scene with open_boundaries, or another probe", probe.type)
+    elif isinstance(probe, VolumeBalanceProbe):
+        return
     elif probe.patch is not None and probe.patch not in names.open_boundaries:
         yield unknown_name(f"{key}.patch", "open boundary", probe.patch, names.open_boundaries)
+
+
+def _wall_line_problems(
+    probe: VolumeBalanceProbe, scene: Scene, names: DeclaredNames, key: str
+) -> Iterator[Problem]:
+    if probe.walls and scene.dimension != 2:
+        message = "lines enclose an area in the plane only"
+        yield Problem.at(f"{key}.walls", message, "a scene in two dimensions, or no walls")
+    for index, line in enumerate(probe.walls):
+        if line.structure not in names.structures:
+            at = f"{key}.walls.{index}.structure"
+            yield unknown_name(at, "structure", line.structure, names.structures)
 
 
 def _clamp_problems(probe: Probe, scene: Scene, key: str) -> Iterator[Problem]:
