@@ -88,6 +88,12 @@ def write_run(tmp_path: Path) -> Callable[..., Path]:
 
 
 @pytest.fixture
+def make_scene() -> Callable[[int], Scene]:
+    """What makes the scene of the runs, in two or three dimensions."""
+    return scene_of
+
+
+@pytest.fixture
 def tank() -> RenderedSet:
     """The walls of the tank in space."""
     return RenderedSet("tank", "boundary", tank_walls(3), SPACING, None)

@@ -27,6 +27,9 @@ Fps = Annotated[
 Streamlines = Annotated[
     bool, typer.Option("--streamlines", help="Draw the streamlines of each moment; in two dimensions.")
 ]
+Paths = Annotated[
+    bool, typer.Option("--paths", help="Draw the paths of particles too, which output.paths records.")
+]
 
 DEFAULT_SIZE = "1280x720"
 
@@ -39,6 +42,7 @@ def render(
     frames: Frames = ":",
     fps: Fps = None,
     streamlines: Streamlines = False,
+    paths: Paths = False,
     verbose: Verbose = False,
 ) -> ExitCode:
     """Draw the frames of a run: a PNG each and one MP4, in the directory `render` beside the frames.
@@ -58,6 +62,7 @@ def render(
         frames=frames,
         fps=fps,
         streamlines=streamlines,
+        paths=paths,
     )
     return ExitCode.OK
 
@@ -71,6 +76,7 @@ def draw(
     frames: str = ":",
     fps: float | None = None,
     streamlines: bool = False,
+    paths: bool = False,
 ) -> None:
     """Draw with a progress bar, and say where the pictures are."""
     require_render_extra()
@@ -87,6 +93,7 @@ def draw(
             frames=frames,
             fps=fps,
             streamlines=streamlines,
+            paths=paths,
             progress=lambda done, total: bar.update(task, completed=done, total=total),
         )
     console.print(f"{len(pictures.images)} pictures in {pictures.images[0].parent}", soft_wrap=True)

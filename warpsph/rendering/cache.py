@@ -51,7 +51,7 @@ class ParticleCache:
     def __init__(self, path: Path) -> None:
         """Open a stage, or the one in a run directory. Raises RenderError if there are no particles."""
         self.path = path / USD_FILE if path.is_dir() else path
-        self._stage = _open(self.path)
+        self._stage = open_stage(self.path)
         self._sets = [UsdGeom.Points(prim) for prim in self._stage.Traverse() if prim.IsA(UsdGeom.Points)]
         self.codes = sorted({code for s in self._sets for code in s.GetPointsAttr().GetTimeSamples()})
         if not self.codes:
@@ -130,7 +130,8 @@ class ParticleCache:
         return np.zeros((0, 3)) if value is None else np.asarray(value)
 
 
-def _open(path: Path) -> Usd.Stage:
+def open_stage(path: Path) -> Usd.Stage:
+    """A stage to read. Raises RenderError."""
     if not path.is_file():
         allowed = f"a run directory that holds {USD_FILE}, or a USD file"
         raise RenderError(f"{path}: there is no such file; give {allowed}")

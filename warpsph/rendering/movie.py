@@ -16,6 +16,7 @@ from warpsph.rendering.cache import ParticleCache
 from warpsph.rendering.colour import scale_of
 from warpsph.rendering.errors import RenderError
 from warpsph.rendering.extent import extent_of
+from warpsph.rendering.pathlines import PATH_FILE, Pathline, read_pathlines
 from warpsph.rendering.plane import PlaneView
 from warpsph.rendering.space import SpaceView
 
@@ -40,6 +41,7 @@ def render(
     frames: str = ":",
     fps: float | None = None,
     streamlines: bool = False,
+    paths: bool = False,
     progress: Callable[[int, int], None] = lambda done, total: None,
 ) -> Pictures:
     """Draw frames of a run directory or USD file into a directory `render` beside the USD file.
@@ -51,6 +53,7 @@ def render(
             end. One picture alone makes no movie.
         fps: frames a second of the movie; by default real time, 60 at most.
         streamlines: draw those of the fluid at each moment; in two dimensions.
+        paths: draw the paths of particles that the run has recorded, up to the time of each picture.
         progress: called with the number of pictures made and the total.
 
     Raises:
@@ -65,19 +68,20 @@ def render(
         raise RenderError(f"streamlines are drawn in two dimensions, and {cache.path} has three")
     indices = chosen_frames(frames, len(cache.codes))
     directory = cache.path.parent / "render"
-    paths = tuple(directory / f"{field}_{index:04d}.png" for index in indices)
+    files = tuple(directory / f"{field}_{index:04d}.png" for index in indices)
     movie = directory / f"{field}.mp4" if len(indices) > 1 else None
-    drawn = _drawn(cache, field, size, indices, streamlines)
+    lines = read_pathlines(cache.path.parent / PATH_FILE) if paths else ()
+    drawn = _drawn(cache, field, size, indices, streamlines, lines)
     try:
         directory.mkdir(exist_ok=True)
         with _movie_writer(movie, size, fps or _real_time_rate(cache, indices)) as append:
-            for count, (path, picture) in enumerate(zip(paths, drawn, strict=True), start=1):
+            for count, (path, picture) in enumerate(zip(files, drawn, strict=True), start=1):
                 image.imsave(path, picture)
                 append(picture)
-                progress(count, len(paths))
+                progress(count, len(files))
     except OSError as error:
         raise OutputError(directory, f"cannot write: {reason_of(error)}") from error
-    return Pictures(paths, movie)
+    return Pictures(files, movie)
 
 
 def chosen_frames(text: str, count: int) -> tuple[int, ...]:
@@ -102,14 +106,19 @@ def _check_size(size: tuple[int, int]) -> None:
 
 
 def _drawn(
-    cache: ParticleCache, field: str, size: tuple[int, int], indices: Sequence[int], streamlines: bool
+    cache: ParticleCache,
+    field: str,
+    size: tuple[int, int],
+    indices: Sequence[int],
+    streamlines: bool,
+    pathlines: Sequence[Pathline],
 ) -> Iterator[np.ndarray]:
     scale, extent = scale_of(cache, field), extent_of(cache, field)
     view: PlaneView | SpaceView
     if cache.is_plane:
-        view = PlaneView(scale, extent, size, streamlines=streamlines)
+        view = PlaneView(scale, extent, size, streamlines=streamlines, pathlines=pathlines)
     else:
-        view = SpaceView(scale, extent, size, cache.up_axis)
+        view = SpaceView(scale, extent, size, cache.up_axis, pathlines=pathlines)
     for index in indices:
         yield view.draw(cache.frame(index, field, velocities=streamlines))
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.collections import EllipseCollection
@@ -9,6 +11,7 @@ from matplotlib.collections import EllipseCollection
 from warpsph.rendering.cache import RenderedFrame, RenderedSet
 from warpsph.rendering.colour import ColourScale
 from warpsph.rendering.figure import BAR_STRIP, Box, add_colour_bar, add_time, page, pixels, style_axes
+from warpsph.rendering.pathlines import Pathline, draw_pathlines
 from warpsph.rendering.streamlines import draw_streamlines
 
 WALL_COLOUR = "#a3a8b0"
@@ -31,8 +34,11 @@ class PlaneView:
         size: tuple[int, int],
         *,
         streamlines: bool = False,
+        pathlines: Sequence[Pathline] = (),
     ) -> None:
-        """Show the extent [m] in pictures of that size in pixels; streamlines need frames with velocities."""
+        """Show the extent [m] in pictures of that size in pixels, with paths over it; streamlines need frames with
+        velocities."""
+        self._pathlines = pathlines
         self._scale = scale
         self._streamlines = streamlines
         self._size = size
@@ -53,6 +59,7 @@ class PlaneView:
             _discs(axes, body, colours)
         if self._streamlines:
             draw_streamlines(axes, frame.of_kind("fluid"))
+        draw_pathlines(axes, self._pathlines, frame.time)
         add_colour_bar(figure, self._scale, left + width + 0.015, bottom, height)
         add_time(figure, frame.time, left, bottom + height + 0.055)
         return pixels(figure)

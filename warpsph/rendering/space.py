@@ -14,6 +14,7 @@ from warpsph.rendering.camera import frame_box
 from warpsph.rendering.canvas import Canvas, Material, Spheres
 from warpsph.rendering.colour import ColourScale
 from warpsph.rendering.figure import BAR_STRIP, add_colour_bar, add_time, page, pixels
+from warpsph.rendering.pathlines import Pathline, draw_pathlines
 from warpsph.rendering.surroundings import encloses, inner_layer, neighbour_counts
 
 TANK = Material(np.array([[0.87, 0.88, 0.90]]))
@@ -32,9 +33,15 @@ class SpaceView:
     """Draws the frames of one run from one place; walls that stand still are painted only once."""
 
     def __init__(
-        self, scale: ColourScale, extent: tuple[np.ndarray, np.ndarray], size: tuple[int, int], up_axis: int
+        self,
+        scale: ColourScale,
+        extent: tuple[np.ndarray, np.ndarray],
+        size: tuple[int, int],
+        up_axis: int,
+        pathlines: Sequence[Pathline] = (),
     ) -> None:
-        """Frame the extent [m] in pictures of that size in pixels."""
+        """Frame the extent [m] in pictures of that size in pixels, with paths over it, also where they are behind."""
+        self._pathlines = pathlines
         self._scale = scale
         self._size = size
         self._picture_width = round(size[0] * (1.0 - BAR_STRIP))
@@ -54,6 +61,8 @@ class SpaceView:
         axes = figure.add_axes((0.0, 0.0, self._picture_width / self._size[0], 1.0))
         axes.imshow(canvas.image(), aspect="auto", interpolation="none")
         axes.set_axis_off()
+        axes.autoscale(False)
+        draw_pathlines(axes, self._pathlines, frame.time, self._camera.project)
         add_colour_bar(figure, self._scale, 1.0 - BAR_STRIP + 0.015, 0.25, 0.5)
         add_time(figure, frame.time, 0.022, 0.965)
         return pixels(figure)
