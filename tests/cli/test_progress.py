@@ -83,3 +83,12 @@ def test_reporter_fits_the_console() -> None:
     assert isinstance(reporter_for(log, quiet=False), LineReporter)
     run_reported(reporter_for(log, quiet=True), Clock(), seconds_a_step=1.0)
     assert stream.getvalue() == ""
+
+
+@pytest.mark.parametrize("kind", [LineReporter, BarReporter])
+def test_warnings_are_said_at_once(kind: type[LineReporter] | type[BarReporter]) -> None:
+    console, stream = log_console()
+    reporter = kind(console, Clock())
+    with reporter:
+        reporter.warn("fluid leaked")
+    assert "warning: fluid leaked" in stream.getvalue()

@@ -1,7 +1,7 @@
 """Progress of a run: a bar on a terminal, occasional lines elsewhere, nothing if asked for.
 
-A reporter has `start(sim)`, `progress(sim)` after every step, and `finish(summary)`; it is entered before the
-particles are sampled.
+A reporter has `start(sim)`, `progress(sim)` after every step, `warn(text)`, and `finish(summary)`; it is entered before
+the particles are sampled.
 """
 
 from __future__ import annotations
@@ -71,6 +71,9 @@ class Reporter:
         """A step has been made."""
         self.time = sim.time
 
+    def warn(self, text: str) -> None:
+        """Something looks wrong while the run goes on."""
+
     def finish(self, summary: Mapping[str, Any]) -> None:
         """The run is over."""
 
@@ -120,6 +123,10 @@ class BarReporter(Reporter):
         pace = f"{self._pace.in_words(sim)}, {step_in_words(sim.last_step)}"
         self._bar.update(self._task, description=description, completed=sim.time, pace=pace)
 
+    def warn(self, text: str) -> None:
+        """Say it above the bar."""
+        self._bar.console.print(f"warning: {text}", style="yellow", highlight=False, soft_wrap=True)
+
     def finish(self, summary: Mapping[str, Any]) -> None:
         """Fill the bar."""
         self._bar.update(self._task, completed=self.time, refresh=True)
@@ -164,6 +171,10 @@ class LineReporter(Reporter):
             f"t = {sim.time:.4g} of {sim.end_time:.4g} s ({fraction:.0%}), {duration(left)} left, "
             f"{self._pace.in_words(sim)}, {step_in_words(sim.last_step)}"
         )
+
+    def warn(self, text: str) -> None:
+        """Say it at once."""
+        self._say(f"warning: {text}")
 
     def _say(self, text: str) -> None:
         self._console.print(text, highlight=False, soft_wrap=True)

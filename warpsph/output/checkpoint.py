@@ -14,7 +14,7 @@ from warpsph.output.atomic import write_atomically
 from warpsph.output.hdf5_image import file_image
 
 FORMAT = "warpsph checkpoint"
-VERSION = 1
+VERSION = 2
 """Of the format; what a state holds is checked by who goes on from it."""
 
 

@@ -29,7 +29,7 @@ from warpsph.solver.system import StepReport, in_order
 
 ARRAYS = ("position", "velocity_volume", "density_deviation", "acceleration", "id", "set_index")
 FIELDS = (
-    *("position", "velocity", "density", "pressure", "volume", "mass", "force", "id"),
+    *("position", "velocity", "acceleration", "density", "pressure", "volume", "mass", "force", "id"),
     *("vorticity", "free_surface", "viscous_force", "wall_shear_stress"),
 )
 OF_FLUIDS = ("density", "mass", "vorticity", "free_surface", "age", "patch")
@@ -259,6 +259,7 @@ class FluidSystem:
         makers: dict[str, Callable[[], np.ndarray]] = {
             "position": lambda: self._host("position"),
             "velocity": lambda: velocity_volume[:, :-1],
+            "acceleration": lambda: self._host("acceleration"),
             "density": lambda: a.constants.rest_density + self._host("density_deviation").astype(np.float64),
             "pressure": lambda: pressure[:, -1],
             "volume": lambda: velocity_volume[:, -1],

@@ -26,6 +26,7 @@ from warpsph.solver.resume import require_all_of, require_same_run, require_time
 from warpsph.solver.schedule import Stop, schedule
 from warpsph.solver.simulation import Simulation
 from warpsph.solver.summary import StepStatistics, summarise
+from warpsph.solver.watches_of import watches_of
 
 
 class RunReporter(Protocol):
@@ -34,6 +35,8 @@ class RunReporter(Protocol):
     def start(self, sim: Simulation) -> None: ...
 
     def progress(self, sim: Simulation) -> None: ...
+
+    def warn(self, text: str) -> None: ...
 
     def finish(self, summary: dict[str, Any]) -> None: ...
 
@@ -98,6 +101,7 @@ class _Run:
         self._csv = ProbesCsv(directory.probes, [c for probe in self._probes for c in probe.columns])
         self._samples: list[FieldSample] = []
         self._statistics = StepStatistics(sim)
+        self._watches = watches_of(scene)
         self._wall_before = 0.0
         self._resumed_at: float | None = None
 
@@ -107,6 +111,7 @@ class _Run:
         self._statistics.load(json.loads(state["statistics"]), self._sim)
         self._samples = [FieldSample(**sample) for sample in json.loads(state["samples"])]
         self._recordings.load(state["recordings"])
+        self._watches.load(json.loads(state["watches"]))
         self._wall_before = float(state["wall_seconds"])
         self._resumed_at = self._sim.time
 
@@ -117,6 +122,8 @@ class _Run:
             writer.open(self._resumed_at)
         status = "failed"
         try:
+            if self._resumed_at is None:
+                self._watches.start(self._sim)
             if self._reporter:
                 self._reporter.start(self._sim)
             with Interruption() as interruption:
@@ -150,13 +157,17 @@ class _Run:
             if stop.frame is not None:
                 self._sim.frame_index = stop.frame
             self._write(stop)
+        self._watches.look(self._sim)
         return "complete"
 
     def _advance(self, until: float, interruption: Interruption) -> bool:
         for _ in self._sim.steps_until(until):
             self._statistics.note(self._sim)
+            found = self._watches.note(self._sim)
             if self._reporter:
                 self._reporter.progress(self._sim)
+                for warning in found:
+                    self._reporter.warn(warning)
             if interruption.requested:
                 return False
         return True
@@ -193,6 +204,7 @@ class _Run:
             "statistics": json.dumps(self._statistics.save(self._sim)),
             "samples": json.dumps([asdict(sample) for sample in self._samples]),
             "recordings": self._recordings.save(),
+            "watches": json.dumps(self._watches.save()),
             "wall_seconds": self._wall_seconds(),
         }
         write_checkpoint(self._directory.checkpoint, state, self._scene.to_yaml())
@@ -205,6 +217,6 @@ class _Run:
             writer.close()
         history = {name: np.asarray(values) for name, values in read_probes(self._directory.probes).items()}
         rows = compare_run(self._scene, history, self._samples) if status == "complete" else ()
-        summary = summarise(self._sim, status, self._wall_seconds(), self._statistics, rows)
+        summary = summarise(self._sim, status, self._wall_seconds(), self._statistics, self._watches, rows)
         write_summary(self._directory.summary, summary)
         return summary

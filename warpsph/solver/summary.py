@@ -10,6 +10,7 @@ from typing import Any
 from warpsph.comparison.row import Comparison
 from warpsph.solver.ledger import Ledger
 from warpsph.solver.simulation import Simulation
+from warpsph.solver.watch import Watches
 
 
 class StepStatistics:
@@ -78,12 +79,18 @@ class StepStatistics:
 
 
 def summarise(
-    sim: Simulation, status: str, wall_seconds: float, statistics: StepStatistics, rows: Sequence[Comparison]
+    sim: Simulation,
+    status: str,
+    wall_seconds: float,
+    statistics: StepStatistics,
+    watches: Watches,
+    rows: Sequence[Comparison],
 ) -> dict[str, Any]:
     """Return the summary of a run; `status` is complete, interrupted, failed or `diverged: ...`."""
     description = sim.describe()
     stages = statistics.stages(sim)
     stepping = sum(stages.values())
+    own = sim.system.warnings(statistics.largest) if statistics.count else []
     return {
         "scene": sim.scene.name,
         "status": status,
@@ -112,7 +119,8 @@ def summarise(
         "neighbours": description.get("neighbours"),
         "passes": description["passes"],
         "ledger": {"start": statistics.first.as_record(), "end": _end_ledger(sim, status)},
-        "warnings": sim.system.warnings(statistics.largest) if statistics.count else [],
+        "watches": watches.record(),
+        "warnings": [*own, *watches.warnings],
         "references": [row.as_record() for row in rows],
     }
 

@@ -8,6 +8,7 @@ import numpy as np
 from scipy.spatial import cKDTree
 
 from warpsph.sampling.distance import signed_distance
+from warpsph.solver.leaks import LeakFinder
 from warpsph.solver.simulation import Simulation
 
 
@@ -22,29 +23,14 @@ def water_of(simulation: Simulation) -> np.ndarray:
 
 
 def leaked(simulation: Simulation) -> int:
-    """Count particles of fluid that are more than half a spacing inside a structure or outside the boundary `tank`.
-
-    A place in a deformed body is taken back to the body at rest by the affine map of its nine nearest particles.
-    """
-    water, half = water_of(simulation), 0.5 * simulation.scene.spacing
+    """Count particles of fluid that are more than half a spacing inside a structure or outside the boundary `tank`."""
+    water, finder = water_of(simulation), LeakFinder(simulation.scene)
     tank = simulation.scene.boundaries["tank"].shape
-    count = int((signed_distance(tank, water) > half).sum())
-    return count + sum(_inside(simulation, name, water, half) for name in simulation.scene.structures)
-
-
-def _inside(simulation: Simulation, name: str, water: np.ndarray, half: float) -> int:
-    shape = simulation.scene.structures[name].shape
-    now = rows(simulation, name)
-    rest = now - rows(simulation, name, "displacement")
-    distance, nearest = cKDTree(now).query(water, k=9)
-    close = distance[:, 0] < 3.0 * half
-    count = 0
-    for place, near in zip(water[close], nearest[close], strict=True):
-        middle, home = now[near].mean(axis=0), rest[near].mean(axis=0)
-        back = np.linalg.lstsq(now[near] - middle, rest[near] - home, rcond=None)[0]
-        there = home + (place - middle) @ back
-        count += int(signed_distance(shape, there[None])[0] < -half)
-    return count
+    count = int((signed_distance(tank, water) > 0.5 * simulation.scene.spacing).sum())
+    frame = simulation.frame(finder.fields)
+    return count + sum(
+        len(finder.inside(frame.set_named(name), water)) for name in simulation.scene.structures
+    )
 
 
 def beyond_plate(simulation: Simulation) -> int:

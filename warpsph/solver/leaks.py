@@ -1,0 +1,122 @@
+"""Fluid where there must be none: inside of walls and structures, or outside of closed tanks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from scipy.spatial import cKDTree
+
+from warpsph.frame import Frame, SetFrame
+from warpsph.sampling.distance import signed_distance
+from warpsph.sampling.kinematics import RigidMotion, rigid_motions
+from warpsph.sampling.regions import body_region, wall_region
+from warpsph.sampling.walls import beyond_open_faces, layer_count, period_of
+from warpsph.scene.schema import Boundary, Scene
+
+Depth = Callable[[np.ndarray], np.ndarray]
+"""How deep (n,) [m] points (n, dimension) [m] of the body at rest lie in it."""
+
+NEAREST = 9
+"""Particles of a structure whose affine map takes a place among them back to the body at rest."""
+
+
+@dataclass(frozen=True)
+class Leak:
+    """Particles of a fluid (rows of its set) in a wall or structure."""
+
+    fluid: SetFrame
+    rows: np.ndarray
+    solid: str
+
+
+class LeakFinder:
+    """Finds particles of fluid that are more than half a spacing behind the surface of a wall or structure.
+
+    Behind a wall is all that is outside of a tank without open faces, and what is within the layers of one that has
+    some: over the rim of an open tank fluid may go where it likes. A place in a deformed structure is taken back to the
+    body at rest by the affine map that fits its nearest particles best.
+    """
+
+    def __init__(self, scene: Scene) -> None:
+        self._half = 0.5 * scene.spacing
+        self._period = period_of(scene)
+        self._motions: Mapping[str, RigidMotion] = rigid_motions(scene)
+        self._walls = {name: _wall_depth(scene, wall) for name, wall in scene.boundaries.items()}
+        self._bodies: dict[str, Depth] = {
+            name: _negated(body_region(one.shape, self._period)) for name, one in scene.structures.items()
+        }
+
+    @property
+    def fields(self) -> tuple[str, ...]:
+        """Fields beside positions that frames have to carry."""
+        return ("displacement",) if self._bodies else ()
+
+    def leaks(self, frame: Frame) -> Iterator[Leak]:
+        """All leaks of one time, one a fluid and solid."""
+        for fluid in frame.of_kind("fluid"):
+            points = self._within_period(fluid.fields["position"])
+            for name, depth in self._walls.items():
+                behind = depth(self._at_rest(name, points, frame.time)) > self._half
+                if behind.any():
+                    yield Leak(fluid, np.flatnonzero(behind), name)
+            for name in self._bodies:
+                rows = self.inside(frame.set_named(name), points)
+                if len(rows):
+                    yield Leak(fluid, rows, name)
+
+    def forget(self, solid: str) -> None:
+        """Look no more at a wall or structure."""
+        self._walls.pop(solid, None)
+        self._bodies.pop(solid, None)
+
+    def _within_period(self, points: np.ndarray) -> np.ndarray:
+        wrapped = np.array(points)
+        for axis, (low, high) in self._period.items():
+            wrapped[:, axis] = low + (wrapped[:, axis] - low) % (high - low)
+        return wrapped
+
+    def _at_rest(self, wall: str, points: np.ndarray, time: float) -> np.ndarray:
+        """Where points (n, dimension) [m] would be if the wall had not moved."""
+        if wall not in self._motions:
+            return points
+        pose = self._motions[wall](time)
+        return (points - pose.translation) @ pose.rotation
+
+    def inside(self, body: SetFrame, points: np.ndarray) -> np.ndarray:
+        """Rows of the points (n, dimension) [m] that are more than half a spacing inside of a structure."""
+        now = body.fields["position"]
+        # Among particles half a spacing off the surface and a spacing apart, stretched by half at most.
+        reach = 1.5 * self._half * np.sqrt(points.shape[1])
+        low, high = now.min(axis=0) - reach, now.max(axis=0) + reach
+        close = np.flatnonzero(np.all((points > low) & (points < high), axis=1))
+        if not len(close):
+            return close
+        tree = cKDTree(now)
+        close = close[np.isfinite(tree.query(points[close], distance_upper_bound=reach)[0])]
+        _, nearest = tree.query(points[close], k=range(1, min(NEAREST, len(now)) + 1))
+        near, home = now[nearest], (now - body.fields["displacement"])[nearest]
+        middle, rest = near.mean(axis=1, keepdims=True), home.mean(axis=1, keepdims=True)
+        map_back = np.linalg.pinv(near - middle) @ (home - rest)
+        back = rest + (points[close, None, :] - middle) @ map_back
+        return close[self._bodies[body.name](back[:, 0]) > self._half]
+
+
+def _wall_depth(scene: Scene, wall: Boundary) -> Depth:
+    if not wall.open:
+        outside = partial(signed_distance, wall.shape)
+        return outside if wall.side == "outside" else _negated(outside)
+    # Layers thinner than the support have no inside where fluid could be told from fluid before them.
+    thickness = max(layer_count(wall, scene) * scene.spacing, scene.support_radius)
+    depth = _negated(wall_region(wall, thickness, {}))
+
+    def of_the_wall(points: np.ndarray) -> np.ndarray:
+        return np.where(beyond_open_faces(points, wall, 0.0), -np.inf, depth(points))
+
+    return of_the_wall
+
+
+def _negated(distance: Callable[[np.ndarray], np.ndarray]) -> Depth:
+    return lambda points: -distance(points)
