@@ -38,6 +38,26 @@ def test_real_validation_prints_one_strict_json_object_a_row(
     assert all(row["holds"] is True and row["particles"] > 0 and row["wall_seconds"] > 0 for row in rows)
 
 
+def test_runs_side_by_side_give_the_same_rows_in_the_same_order(
+    warpsph: Command, scene_file: Path, tmp_path: Path
+) -> None:
+    request = ("validate", scene_file, "--resolutions", "0.25,0.5", "--json", "--threads", 1)
+    alone = warpsph(*request, "--out", tmp_path / "alone")
+    result = warpsph(*request, "--jobs", 2, "--out", tmp_path / "pairs")
+    assert result.exit_code == alone.exit_code == 0
+    assert "1/2 tank at spacing 0.5 m took" in result.stderr
+    own = {"wall_seconds", "particle_steps_per_second"}
+    rows, expected = (
+        [
+            {key: value for key, value in json.loads(line).items() if key not in own}
+            for line in one.stdout.splitlines()
+        ]
+        for one in (result, alone)
+    )
+    assert rows == expected
+    assert len(rows) == 2
+
+
 def test_a_directory_that_cannot_be_made_is_bad_input_before_the_first_run(
     warpsph: Command, scene_file: Path, tmp_path: Path, ending: Callable[..., None]
 ) -> None:

@@ -90,6 +90,7 @@ def test_a_name_that_there_is_not(warpsph: Command, tmp_path: Path) -> None:
         ("--compare", "time.cfl=0.2,0.3"),
         ("--set", "spacing=1"),
         ("--resume",),
+        ("--jobs", "2"),
     ],
 )
 def test_options_of_scenes_are_refused(warpsph: Command, tmp_path: Path, option: tuple[str, ...]) -> None:

@@ -12,7 +12,7 @@ import pytest
 from compared_scenes import TANK
 
 from warpsph.comparison.compare import compare_run
-from warpsph.scene import Scene, SceneError
+from warpsph.scene import Scene, SceneError, load_scene, shipped_scenes
 from warpsph.solver.errors import SimulationDiverged
 from warpsph.validation.runner import cases_of, run_case
 
@@ -90,6 +90,40 @@ def test_overrides_of_the_command_beat_those_of_the_scene(scene_file: str) -> No
     overrides = ["time.end=0.5", "output.usd=true"]
     (case,) = cases_of(scene_file, quick=True, resolutions=None, overrides=overrides)
     assert (case.scene.time.end, case.scene.output.usd) == (0.5, True)
+
+
+QUICK = (
+    "validation: {resolutions: [0.1], set: {time.end: 1.0}, quick_set: {time.end: 0.05, output.usd: true}}\n"
+)
+
+
+def test_quick_runs_are_shortened_and_say_which_references_they_skip(tmp_path: Path) -> None:
+    path = tmp_path / "tank.yaml"
+    path.write_text(TANK % json.dumps(REFERENCES) + QUICK)
+    (case,) = cases_of(str(path), quick=True, resolutions=None, overrides=())
+    assert (case.scene.time.end, case.scene.output.usd) == (0.05, True)
+    assert (list(case.scene.references), case.skipped) == (["energy"], {"front": 0.1})
+    result = run_case(case, tmp_path, finished_run)
+    energy, front = result.rows
+    assert (energy["quantity"], energy["holds"]) == ("energy", True)
+    assert (front["quantity"], front["holds"], front["value"]) == ("front", None, None)
+    assert "skipped: it looks at the run until t = 0.1 s, and this one ends at 0.05 s" in front["note"]
+    assert result.holds
+    (case,) = cases_of(str(path), quick=False, resolutions=None, overrides=())
+    assert (case.scene.time.end, case.skipped) == (1.0, {})
+    overrides = ["time.end=0.5"]
+    (case,) = cases_of(str(path), quick=True, resolutions=None, overrides=overrides)
+    assert (case.scene.time.end, case.skipped) == (0.5, {})
+
+
+@pytest.mark.parametrize("name", shipped_scenes())
+def test_quick_sets_of_shipped_scenes_load_and_name_what_they_skip(name: str) -> None:
+    scene = load_scene(name)
+    if not scene.references:
+        return
+    for case in cases_of(name, quick=True, resolutions=None, overrides=()):
+        assert {*case.scene.references, *case.skipped} == set(scene.references)
+        assert not case.skipped or case.scene.time.end < scene.time.end
 
 
 def test_scene_without_references_is_refused(tmp_path: Path) -> None:

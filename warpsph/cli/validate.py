@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -12,7 +13,7 @@ from warpsph.cli.failures import BadInput, ExitCode, reported
 from warpsph.cli.options import Device, NoProgress, Overrides, Threads, Verbose
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Iterator, Mapping, Sequence
 
     from rich.console import Console
 
@@ -60,6 +61,13 @@ Resume = Annotated[
         "--resume", help="Take complete runs of the same scenes from the directory, run the others."
     ),
 ]
+Jobs = Annotated[
+    int,
+    typer.Option(
+        min=1,
+        help="Runs at the same time, each in a process of its own on one thread, unless --threads says otherwise.",
+    ),
+]
 Out = Annotated[Path, typer.Option("--out", metavar="DIR", help="Directory of all runs.")]
 
 
@@ -73,6 +81,7 @@ def validate(
     json_lines: Json = False,
     report: Report = False,
     resume: Resume = False,
+    jobs: Jobs = 1,
     out: Out = Path("out/validation"),
     device: Device = None,
     threads: Threads = None,
@@ -91,11 +100,10 @@ def validate(
     from warpsph.cli.tables import validation_table
     from warpsph.cli.warp_runtime import start_warp
     from warpsph.validation.convergence import judged
-    from warpsph.validation.runner import run_case
 
     if hard:
         of_scenes = {"--quick": quick, "--resolutions": resolutions, "--compare": compare, "--set": overrides}
-        refuse_with_hard({**of_scenes, "--resume": resume})
+        refuse_with_hard({**of_scenes, "--resume": resume, "--jobs": jobs > 1})
         start_warp(device, verbose=verbose)
         from warpsph.cli.hard import validate_hard
         from warpsph.validation.hard.case import Machine
@@ -109,21 +117,66 @@ def validate(
     require_directory(out)
     progress = plain_console(stderr=True, quiet=quiet)
     start_warp(device, verbose=verbose)
+    found = (
+        _one_by_one(cases, out, progress, runner_with(progress, quiet, device, threads, resume=resume))
+        if jobs == 1
+        else _side_by_side(cases, out, progress, jobs, device, threads or 1, resume=resume, verbose=verbose)
+    )
     results: list[CaseResult] = []
     try:
-        for number, case in enumerate(cases, start=1):
-            progress.print(f"{number}/{len(cases)} {in_words(case)}")
-            result = run_case(case, out, runner_with(progress, quiet, device, threads, resume=resume))
-            result = judged(result, results, cases)
-            results.append(result)
+        for result in found:
+            results.append(judged(result, results, cases))
             if json_lines:
-                print_json_lines(result)
+                print_json_lines(results[-1])
     finally:
         if results and not json_lines:
             plain_console().print(validation_table(results))
         if results:
             write_report(results, out, progress, with_page=report)
     return ExitCode.OK if all(result.holds for result in results) else ExitCode.FAILED
+
+
+def _one_by_one(cases: Sequence[Case], out: Path, progress: Console, run: RunScene) -> Iterator[CaseResult]:
+    """The result of each case in turn; shows how its run goes."""
+    from warpsph.validation.runner import run_case
+
+    for number, case in enumerate(cases, start=1):
+        progress.print(f"{number}/{len(cases)} {in_words(case)}", soft_wrap=True)
+        yield run_case(case, out, run)
+
+
+def _side_by_side(
+    cases: Sequence[Case],
+    out: Path,
+    progress: Console,
+    jobs: int,
+    device: str | None,
+    threads: int,
+    *,
+    resume: bool,
+    verbose: bool,
+) -> Iterator[CaseResult]:
+    """The results of all cases in their order, several of which run at the same time; says which are done."""
+    from warpsph.cli.warp_runtime import start_warp
+    from warpsph.validation.side_by_side import side_by_side
+
+    run = partial(run_alone, out=out, device=device, threads=threads, resume=resume)
+    begin = partial(start_warp, device, verbose=verbose)
+    done = side_by_side(cases, run, jobs, begin)
+    for number, (case, result) in enumerate(zip(cases, done, strict=True), start=1):
+        seconds = (result.summary or {}).get("wall_s")
+        took = "" if seconds is None else f" took {seconds:.3g} s"
+        progress.print(f"{number}/{len(cases)} {in_words(case)}{took}", soft_wrap=True)
+        yield result
+
+
+def run_alone(case: Case, out: Path, device: str | None, threads: int, *, resume: bool) -> CaseResult:
+    """The result of a case whose run says nothing."""
+    from warpsph.cli.consoles import plain_console
+    from warpsph.validation.runner import run_case
+
+    silent = plain_console(stderr=True, quiet=True)
+    return run_case(case, out, runner_with(silent, True, device, threads, resume=resume))
 
 
 def refuse_with_hard(given: Mapping[str, Any]) -> None:
@@ -139,7 +192,8 @@ def refuse_with_hard(given: Mapping[str, Any]) -> None:
 def in_words(case: Case) -> str:
     """Which case it is, for the progress."""
     options = f" with {', '.join(case.options)}" if case.options else ""
-    return f"{case.scene.name} at spacing {case.scene.spacing:g} m{options}"
+    skipped = f", without {', '.join(case.skipped)}, beyond its end" if case.skipped else ""
+    return f"{case.scene.name} at spacing {case.scene.spacing:g} m{options}{skipped}"
 
 
 def write_report(

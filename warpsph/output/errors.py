@@ -12,6 +12,10 @@ class OutputError(RuntimeError):
         self.reason = reason
         super().__init__(f"{path}: {reason}")
 
+    def __reduce__(self) -> tuple[type["OutputError"], tuple[Path, str]]:
+        """What another process makes the same error of."""
+        return type(self), (self.path, self.reason)
+
 
 def reason_of(error: OSError) -> str:
     """What the operating system says, without number and path."""

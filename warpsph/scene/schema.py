@@ -218,6 +218,10 @@ class Validation(SceneModel):
     set: Mapping[str, Any] = {}
     """Overrides of the scene for these runs, such as {time.end: 2.0}. Default: none."""
 
+    quick_set: Mapping[str, Any] = {}
+    """Further overrides for those of the quick tier, which beat `set`. References whose times lie beyond an earlier
+    time.end are left out of it. Default: none."""
+
 
 class Scene(SceneModel):
     """Everything that defines a run."""

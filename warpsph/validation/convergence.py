@@ -33,7 +33,7 @@ def judged(result: CaseResult, earlier: Sequence[CaseResult], cases: Sequence[Ca
 
 
 def _row(case: Case, row: Mapping[str, Any], coarser: float | None) -> Mapping[str, Any]:
-    reference = case.scene.references[row["quantity"]]
+    reference = case.scene.references.get(row["quantity"])
     if not isinstance(reference, FeatureReference) or reference.convergence is None:
         return row
     error = None if not coarser or row["value"] is None else abs(row["value"] / coarser - 1.0)

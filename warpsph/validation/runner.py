@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,7 @@ from warpsph.scene.errors import Problem, SceneError
 from warpsph.scene.references import bound_at
 from warpsph.scene.schema import Scene, Validation
 from warpsph.validation.options import ComparedOption, as_mapping, combinations, problems_of, unique
+from warpsph.validation.windows import beyond_the_end
 
 RunScene = Callable[[Scene, Path], Mapping[str, Any]]
 """Runs a scene into a directory and returns its summary."""
@@ -25,10 +26,14 @@ RUN_FACTS = ("wall_seconds", "steps", "particles", "particle_steps_per_second", 
 
 @dataclass(frozen=True)
 class Case:
-    """A scene at one resolution, ready to run; `options` are the compared values in it, as `key=value`."""
+    """A scene at one resolution, ready to run; `options` are the compared values in it, as `key=value`.
+
+    `skipped` are the references that have been taken out of it since they look at times [s] beyond its end.
+    """
 
     scene: Scene
     options: tuple[str, ...] = ()
+    skipped: Mapping[str, float] = field(default_factory=dict)
 
     @property
     def directory(self) -> Path:
@@ -68,8 +73,9 @@ def cases_of(
     """A scene at the spacings [m] asked for, else at those that its `validation` names, coarse ones first.
 
     Every combination of the compared options runs at all of them. These beat overrides, which beat those of
-    `validation.set`. Frames are not kept as USD unless an override says so. Raises SceneError with the problems of
-    all cases that cannot run, or if the scene has nothing to compare with.
+    `validation.quick_set`, which hold for `quick` and beat those of `validation.set`. Where they end the run earlier,
+    references that look beyond are skipped. Frames are not kept as USD unless an override says so. Raises SceneError
+    with the problems of all cases that cannot run, or if the scene has nothing to compare with.
     """
     base = load_scene(scene, overrides)
     if not base.references:
@@ -77,15 +83,16 @@ def cases_of(
         raise SceneError(
             [Problem.at("references", f"the scene {base.name} has nothing to compare with", allowed)]
         )
-    prescribed = base.validation.set if base.validation else {}
-    own = [f"{key}={json.dumps(value)}" for key, value in prescribed.items()]
+    validation = base.validation or Validation(resolutions=(base.spacing,))
+    own = _as_overrides({**validation.set, **(validation.quick_set if quick else {})})
+    whole = load_scene(scene, [*_as_overrides(validation.set), *overrides]).time.end
     spacings = sorted(set(resolutions or _spacings(base, quick=quick)), reverse=True)
     cases: list[Case] = []
     problems: list[Problem] = []
     for options, spacing in product(combinations(compared), spacings):
         every = ["output.usd=false", *own, *overrides, *options, f"spacing={spacing!r}"]
         try:
-            cases.append(Case(load_scene(scene, every), options))
+            cases.append(_without_what_lies_beyond(Case(load_scene(scene, every), options), whole))
         except SceneError as error:
             problems.extend(problems_of(error, options))
     if problems:
@@ -109,8 +116,20 @@ def run_case(case: Case, directory: Path, run_scene: RunScene) -> CaseResult:
             case, tuple(_row_of_failed_run(case, name) for name in case.scene.references), str(error)
         )
     facts = _facts(summary)
-    rows = tuple(_row(case, comparison, facts) for comparison in summary["references"])
-    return CaseResult(case, rows, summary=summary)
+    rows = [_row(case, comparison, facts) for comparison in summary["references"]]
+    rows += [_row_of_skipped(case, name, time, facts) for name, time in case.skipped.items()]
+    return CaseResult(case, tuple(rows), summary=summary)
+
+
+def _as_overrides(values: Mapping[str, Any]) -> list[str]:
+    return [f"{key}={json.dumps(value)}" for key, value in values.items()]
+
+
+def _without_what_lies_beyond(case: Case, whole: float) -> Case:
+    """The case without the references that it cannot serve because it ends before the whole run would [s]."""
+    skipped = beyond_the_end(case.scene, whole) if case.scene.time.end < whole else {}
+    kept = {name: one for name, one in case.scene.references.items() if name not in skipped}
+    return replace(case, scene=case.scene.model_copy(update={"references": kept}), skipped=skipped)
 
 
 def _spacings(scene: Scene, *, quick: bool) -> Sequence[float]:
@@ -128,6 +147,12 @@ def _facts(summary: Mapping[str, Any]) -> dict[str, Any]:
 def _row(case: Case, comparison: Mapping[str, Any], facts: Mapping[str, Any]) -> dict[str, Any]:
     options = {"options": as_mapping(case.options)} if case.options else {}
     return {"scene": case.scene.name, "resolution": case.scene.spacing, **options, **comparison, **facts}
+
+
+def _row_of_skipped(case: Case, quantity: str, time: float, facts: Mapping[str, Any]) -> dict[str, Any]:
+    nothing = dict.fromkeys(("value", "reference", "error", "bound", "holds"))
+    note = f"skipped: it looks at the run until t = {time:.6g} s, and this one ends at {case.scene.time.end:.6g} s"
+    return _row(case, {"quantity": quantity, **nothing, "note": note}, facts)
 
 
 def _row_of_failed_run(case: Case, quantity: str) -> dict[str, Any]:
