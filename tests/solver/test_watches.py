@@ -198,10 +198,12 @@ def test_a_budget_that_cannot_be_drawn_up_is_not_judged() -> None:
 
 
 def test_fluid_behind_walls_is_found_where_they_are_now() -> None:
-    """Places in and beside walls of a closed tank, of an open one, and of a block that has moved by 1 m."""
+    """Places in and beside the walls of two tanks, a shelf, and a block that has moved by 1 m."""
     base = still_tank(spacing=0.1).model_dump()
+    shelf = {"type": "plane", "point": (0.0, 5.0), "normal": (0.0, 1.0)}
     base["boundaries"] |= {
-        "closed": {"shape": box((0.0, 0.0), (0.5, 2.0)), "side": "outside"},
+        "closed": {"shape": box((0.0, -3.0), (0.5, -2.0)), "side": "outside"},
+        "shelf": {"shape": shelf | {"bounds": {"min": (0.0, 4.0), "max": (1.0, 6.0)}}, "side": "inside"},
         "block": {
             "shape": box((3.0, 0.0), (4.0, 1.0)),
             "side": "solid",
@@ -212,12 +214,18 @@ def test_fluid_behind_walls_is_found_where_they_are_now() -> None:
     places = {
         (0.2, 0.2): set(),
         (-0.04, 0.2): set(),  # less than half a spacing
-        (-0.06, 0.2): {"tank", "closed"},
-        (-5.0, 0.2): {"closed"},  # beyond the layers of the open tank
-        (-0.1, 0.8): {"closed"},  # above its rim
-        (0.2, 2.5): {"closed"},
-        (3.5, 0.5): {"closed"},  # where the block was
-        (4.5, 0.5): {"closed", "block"},
+        (-0.06, 0.2): {"tank"},
+        (-5.0, 0.2): {"tank"},  # beyond its layers, and in no other tank
+        (0.2, -2.5): set(),  # beyond them, in the other tank
+        (0.2, -1.8): {"closed"},  # behind its lid
+        (0.2, -0.2): {"tank"},  # behind the floor of the first
+        (-0.1, 0.8): set(),  # above its rim
+        (0.2, 4.85): {"shelf"},
+        (0.2, 4.5): set(),  # beyond its layers
+        (1.2, 4.85): set(),  # beside it
+        (4.5, 0.5): {"block"} | {"tank"},
+        (4.5, 0.9): {"block"},
+        (3.5, 0.9): set(),  # where the block was
     }
     position = np.array(list(places))
     water = SetFrame("water", "fluid", {"position": position, "id": np.arange(len(places))})

@@ -1,20 +1,18 @@
-"""Fluid where there must be none: inside of walls and structures, or outside of closed tanks."""
+"""Fluid where there must be none: behind the surfaces of walls and structures."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 from scipy.spatial import cKDTree
 
 from warpsph.frame import Frame, SetFrame
-from warpsph.sampling.distance import signed_distance
-from warpsph.sampling.kinematics import RigidMotion, rigid_motions
-from warpsph.sampling.regions import body_region, wall_region
-from warpsph.sampling.walls import beyond_open_faces, layer_count, period_of
-from warpsph.scene.schema import Boundary, Scene
+from warpsph.sampling.regions import body_region
+from warpsph.sampling.walls import period_of
+from warpsph.scene.schema import Scene
+from warpsph.solver.behind_walls import BehindWalls
 
 Depth = Callable[[np.ndarray], np.ndarray]
 """How deep (n,) [m] points (n, dimension) [m] of the body at rest lie in it."""
@@ -35,16 +33,14 @@ class Leak:
 class LeakFinder:
     """Finds particles of fluid that are more than half a spacing behind the surface of a wall or structure.
 
-    Behind a wall is all that is outside of a tank without open faces, and what is within the layers of one that has
-    some: over the rim of an open tank fluid may go where it likes. A place in a deformed structure is taken back to the
-    body at rest by the affine map that fits its nearest particles best.
+    A place in a deformed structure is taken back to the body at rest by the affine map that fits its nearest particles
+    best.
     """
 
     def __init__(self, scene: Scene) -> None:
         self._half = 0.5 * scene.spacing
         self._period = period_of(scene)
-        self._motions: Mapping[str, RigidMotion] = rigid_motions(scene)
-        self._walls = {name: _wall_depth(scene, wall) for name, wall in scene.boundaries.items()}
+        self._walls = BehindWalls(scene)
         self._bodies: dict[str, Depth] = {
             name: _negated(body_region(one.shape, self._period)) for name, one in scene.structures.items()
         }
@@ -58,32 +54,15 @@ class LeakFinder:
         """All leaks of one time, one a fluid and solid."""
         for fluid in frame.of_kind("fluid"):
             points = self._within_period(fluid.fields["position"])
-            for name, depth in self._walls.items():
-                behind = depth(self._at_rest(name, points, frame.time)) > self._half
-                if behind.any():
-                    yield Leak(fluid, np.flatnonzero(behind), name)
-            for name in self._bodies:
-                rows = self.inside(frame.set_named(name), points)
-                if len(rows):
-                    yield Leak(fluid, rows, name)
-
-    def forget(self, solid: str) -> None:
-        """Look no more at a wall or structure."""
-        self._walls.pop(solid, None)
-        self._bodies.pop(solid, None)
+            found = self._walls.rows(points, frame.time)
+            found |= {name: self.inside(frame.set_named(name), points) for name in self._bodies}
+            yield from (Leak(fluid, rows, name) for name, rows in found.items() if len(rows))
 
     def _within_period(self, points: np.ndarray) -> np.ndarray:
         wrapped = np.array(points)
         for axis, (low, high) in self._period.items():
             wrapped[:, axis] = low + (wrapped[:, axis] - low) % (high - low)
         return wrapped
-
-    def _at_rest(self, wall: str, points: np.ndarray, time: float) -> np.ndarray:
-        """Where points (n, dimension) [m] would be if the wall had not moved."""
-        if wall not in self._motions:
-            return points
-        pose = self._motions[wall](time)
-        return (points - pose.translation) @ pose.rotation
 
     def inside(self, body: SetFrame, points: np.ndarray) -> np.ndarray:
         """Rows of the points (n, dimension) [m] that are more than half a spacing inside of a structure."""
@@ -102,20 +81,6 @@ class LeakFinder:
         map_back = np.linalg.pinv(near - middle) @ (home - rest)
         back = rest + (points[close, None, :] - middle) @ map_back
         return close[self._bodies[body.name](back[:, 0]) > self._half]
-
-
-def _wall_depth(scene: Scene, wall: Boundary) -> Depth:
-    if not wall.open:
-        outside = partial(signed_distance, wall.shape)
-        return outside if wall.side == "outside" else _negated(outside)
-    # Layers thinner than the support have no inside where fluid could be told from fluid before them.
-    thickness = max(layer_count(wall, scene) * scene.spacing, scene.support_radius)
-    depth = _negated(wall_region(wall, thickness, {}))
-
-    def of_the_wall(points: np.ndarray) -> np.ndarray:
-        return np.where(beyond_open_faces(points, wall, 0.0), -np.inf, depth(points))
-
-    return of_the_wall
 
 
 def _negated(distance: Callable[[np.ndarray], np.ndarray]) -> Depth:
