@@ -87,6 +87,7 @@ def test_every_case_has_a_name_of_its_own_and_says_what_it_does():
         "edge_of_the_courant_number_of_structures",
         "fluid_under_tension_with_shifting",
         pytest.param("disorder_at_the_start_with_shifting", marks=pytest.mark.verification),
+        pytest.param("patches_at_30_degrees", marks=pytest.mark.verification),
         pytest.param("splash_over_a_corner", marks=pytest.mark.verification),
         pytest.param("column_a_hundred_times_as_tall_as_wide", marks=pytest.mark.verification),
         pytest.param("plate_a_tenth_as_dense_as_water", marks=pytest.mark.verification),
