@@ -15,6 +15,7 @@ from warpsph.particles.state import host_view, write_array
 from warpsph.scene.schema import Scene
 from warpsph.solver.energy_watch import EnergyWatch, why_not_closed
 from warpsph.solver.errors import SimulationDiverged
+from warpsph.solver.leak_watch import LeakWatch
 from warpsph.solver.leaks import LeakFinder
 from warpsph.solver.run import run_scene
 from warpsph.solver.simulation import Simulation
@@ -318,3 +319,21 @@ def test_what_watches_remember_survives_a_break(tmp_path: Path) -> None:
     assert again["watches"] == whole["watches"]
     assert set(again["watches"]) == {"step", "energy", "leaks"}
     assert again["watches"]["energy"]["gained_J"] != 0.0
+
+
+def test_a_particle_that_comes_back_has_not_leaked() -> None:
+    """Behind the wall at one look and before it at the next: counted, and no warning; at two looks in a row: a leak."""
+    scene = still_tank(spacing=0.1)
+    sim, watch = Simulation(scene, device="cpu", threads=1), LeakWatch(scene)
+    watch.start(sim)
+    position = sim.array("position")
+    home = np.array(host_view(position))
+    strayed = home.copy()
+    first = int(np.argmin(home[:25, 0]))
+    strayed[first, 0] = -0.1
+    for places, warnings in ((strayed, 0), (home, 0), (strayed, 0), (strayed, 1), (strayed, 1)):
+        write_array(position, places)
+        watch.look(sim)
+        assert len(watch.warnings) == warnings
+    assert watch.record() == {"at_last": 1, "at_most": 1, "ignored": []}
+    assert f"particle {int(host_view(sim.array('id'))[first])} of water at (-0.1," in watch.warnings[0]

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from typing import Any
 
 from warpsph.scene.schema import Scene
-from warpsph.solver.culprit import particle_at
+from warpsph.solver.culprit import Culprit, particle_at
 from warpsph.solver.leaks import Leak, LeakFinder
 from warpsph.solver.simulation import Simulation
 
@@ -15,9 +15,15 @@ ADVICE = (
     "try a smaller spacing or time.cfl, a higher numerics.sound_speed, more layers, or another numerics.wall."
 )
 
+Place = tuple[str, str, int]
+"""Fluid, wall or structure, and id of the particle."""
+
 
 class LeakWatch:
-    """Counts the particles of fluid behind the surface of a wall or structure, and remembers the first."""
+    """Counts the particles of fluid behind the surface of a wall or structure.
+
+    One that is there at two looks in a row has leaked; out of a corner into which an impact pressed it, it comes back.
+    """
 
     name = "leaks"
     every = 500
@@ -27,22 +33,31 @@ class LeakWatch:
         self._finder = LeakFinder(scene)
         self._ignored: set[tuple[str, str]] = set()
         self._most = self._now = 0
+        self._seen: dict[Place, float] = {}
 
     def start(self, sim: Simulation) -> None:
         """Walls behind which a fluid is from the start are meant so: for that fluid they are ignored."""
         self._ignored = {(leak.fluid.name, leak.solid) for leak in self._leaks(sim)}
 
     def look(self, sim: Simulation) -> None:
-        """Count what has leaked; warn of the first."""
-        leaks = self._leaks(sim)
-        self._now = sum(len(leak.rows) for leak in leaks)
+        """Count what is behind a surface; warn of the first particle that has been there at the last look, too."""
+        found = {
+            (leak.fluid.name, leak.solid, int(leak.fluid.fields["id"][row])): (leak.fluid, int(row))
+            for leak in self._leaks(sim)
+            for row in leak.rows
+        }
+        self._now = len(found)
         self._most = max(self._most, self._now)
-        if leaks and not self.warnings:
-            first = particle_at(leaks[0].fluid, int(leaks[0].rows[0]))
-            self.warnings.append(
-                f"fluid leaked: at t = {sim.time:.6g} s {first} was more than half a spacing behind the surface of "
-                f"{leaks[0].solid}, one of {self._now} such particles. {ADVICE}"
-            )
+        lasting = sorted(found.keys() & self._seen.keys())
+        if lasting and not self.warnings:
+            self.warnings.append(self._in_words(sim, lasting[0], particle_at(*found[lasting[0]])))
+        self._seen = {place: self._seen.get(place, sim.time) for place in found}
+
+    def _in_words(self, sim: Simulation, place: Place, particle: Culprit) -> str:
+        return (
+            f"fluid leaked: since t = {self._seen[place]:.6g} s or earlier {particle} is more than half a spacing "
+            f"behind the surface of {place[1]}, at t = {sim.time:.6g} s one of {self._now} such particles. {ADVICE}"
+        )
 
     def _leaks(self, sim: Simulation) -> list[Leak]:
         found = self._finder.leaks(sim.frame(self._finder.fields, ordered=False))
@@ -55,9 +70,11 @@ class LeakWatch:
 
     def save(self) -> dict[str, Any]:
         """Everything as plain values."""
-        return {"now": self._now, "most": self._most, "ignored": sorted(self._ignored)}
+        seen = [[*place, time] for place, time in sorted(self._seen.items())]
+        return {"now": self._now, "most": self._most, "ignored": sorted(self._ignored), "seen": seen}
 
     def load(self, saved: Mapping[str, Any]) -> None:
         """Go on from what `save` returned."""
         self._now, self._most = int(saved["now"]), int(saved["most"])
         self._ignored = {(fluid, solid) for fluid, solid in saved["ignored"]}
+        self._seen = {(fluid, solid, number): time for fluid, solid, number, time in saved["seen"]}

@@ -63,12 +63,14 @@ class Watches:
         return news
 
     def look(self, sim: Simulation) -> None:
-        """Let all look, whosever turn it is: at the end of a run, which may be shorter than an interval.
+        """Let all look who have not just done so: at the end of a run, which may be shorter than an interval.
 
         Raises SimulationDiverged.
         """
         for watch in self._watches:
-            watch.look(sim)
+            if self._since[watch.name]:
+                self._since[watch.name] = 0
+                watch.look(sim)
 
     @property
     def warnings(self) -> list[str]:
