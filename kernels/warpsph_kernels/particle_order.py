@@ -1,8 +1,10 @@
 """Kernels that keep particles evenly spread: the velocity by which they leave the flow's, and what it carries.
 
 Particles move with v + dv. The shift velocity dv points down the gradient of the concentration, C = sum_b V_b W_ab
-over fluid and walls. The momentum that it carries through the fluid is the divergence of rho v (x) dv (Adami, Hu &
-Adams 2013), summed in a form that changes its sign when a pair is exchanged. `shift` holds dv of the last step.
+over fluid and walls. With transport_velocity, the momentum that it carries through the fluid is the divergence of
+rho v (x) dv (Adami, Hu & Adams 2013), summed in a form that changes its sign when a pair is exchanged. That form leaves
+out v div(rho dv), which is small in the middle of fluid and not at a free surface, where it drives what is shifted
+along it: shifting leaves v alone, as Sun et al. (2017) do. `shift` holds dv of the last step.
 """
 
 from functools import cache
@@ -70,6 +72,7 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
     _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
     smallest_eigenvalue = make_smallest_eigenvalue(options)
     finds_surface = options.particle_order == "shifting"
+    carries = options.particle_order == "transport_velocity"
 
     def bounded(c: constants_type, dv: vector, dt: real):
         largest = real(wp.static(LARGEST_SHIFT)) / (c.inverse_spacing * dt)
@@ -92,7 +95,7 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         coverage: wp.array(dtype=real),
         acceleration: wp.array(dtype=vector),
     ):
-        """One particle: the momentum that dv carries, and the next dv.
+        """One particle: the momentum that dv carries, where it carries any, and the next dv.
 
         transport_velocity: dv = -2 dt p_b / rho grad C with the background pressure p_b = `strength` rho0 c0^2 (Adami,
         Hu & Adams 2013); shifting: dv = -`strength` h v grad C with the largest speed v of all (Sun et al. 2017), and
@@ -113,7 +116,10 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
             F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
             grad = vV_b[dim] * F * x_ab
             concentration += grad
-            carried += rho_a * wp.dot(dv_a, grad) * v_a + c.mass * F * wp.dot(shift[b], x_ab) * unpack(vV_b)
+            if wp.static(carries):
+                carried += rho_a * wp.dot(dv_a, grad) * v_a + c.mass * F * wp.dot(shift[b], x_ab) * unpack(
+                    vV_b
+                )
             if wp.static(finds_surface):
                 moment -= wp.outer(x_ab, grad)
         for n in range(end, ends[i, ends.shape[1] - 1]):
@@ -131,7 +137,8 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         else:
             push = real(2.0) * dt * strength * c.sound_speed * c.sound_speed
             next_shift[i] = bounded(c, -push * concentration, dt)
-        acceleration[i] = acceleration[i] + vV_a[dim] / c.mass * carried
+        if wp.static(carries):
+            acceleration[i] = acceleration[i] + vV_a[dim] / c.mass * carried
 
     @wp.kernel(module=module, enable_backward=False)
     def limit_at_surface(

@@ -69,7 +69,7 @@ class ParticleOrderModel:
         )
 
     def find(self) -> None:
-        """Add what the last shift carries to the accelerations, and find the next shift."""
+        """Add what the last shift carries to the accelerations, if it carries anything, and find the next shift."""
         count = self._rows.targets.count
         self._find.run(count)
         if self._finds_surface:
