@@ -66,7 +66,8 @@ class Inflow:
 
     flux: mass that enters a second [kg/s]; mass: its integral over time [kg], both from density and velocity on the
     patch; counted_mass: of the particles that have entered less those that have left [kg]; entered, left, removed:
-    particles that have entered the domain from the buffer, left it into the buffer, and left the buffer at its far end.
+    particles that have entered the domain from the buffer, left it into the buffer, and left the buffer at its far end
+    or been removed behind an inlet.
     """
 
     flux: float

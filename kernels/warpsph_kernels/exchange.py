@@ -2,7 +2,8 @@
 
 A particle that enters leaves its place to a new one, a buffer's length behind it, so that a column of the buffer keeps
 its spacing. What is behind a patch belongs to the buffer only where the flow on the patch goes out: a particle that has
-entered and is pushed or shifted back has its successor already, and a second one would follow when it came out again.
+entered and is pushed or shifted back has its successor already, and a second one would follow when it came out again. A
+spacing behind the patch its place is taken for good, and it is removed.
 """
 
 from functools import cache
@@ -21,10 +22,10 @@ from warpsph_kernels.patch import (
     make_patch_struct,
 )
 
-ENTERED, LEFT, REMOVED_BEHIND = range(3)
+ENTERED, LEFT, REMOVED_BEHIND, RETURNED = range(4)
 """What can happen to a particle at a patch when lists are made: it enters the domain, leaves it into the buffer, or
-leaves the buffer at its far end."""
-EVENTS = 3
+leaves the buffer at its far end, or is removed a spacing behind a patch through which fluid enters."""
+EVENTS = 4
 BLOCK = 256
 """Particles whose events one thread counts."""
 
@@ -103,6 +104,8 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
                     if speed < real(0.0) or below_level(patch, away) < real(0.0):
                         tag[i] = j
                         happens = wp.static(EVENTS) * j + wp.static(LEFT)
+                    elif depth * c.inverse_spacing < real(-1.0):
+                        happens = wp.static(EVENTS) * j + wp.static(RETURNED)
         event[i] = happens
         births[i] = born
 
@@ -172,9 +175,9 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
 
     @wp.kernel(module=module, enable_backward=False)
     def mark_removed(offset: int, event: wp.array(dtype=wp.int32), key: wp.array(dtype=wp.int32)):
-        """One fluid particle before sorting: removed if it has left its buffer at the far end."""
+        """One fluid particle before sorting: removed if it has left its buffer at the far end, or returned too far."""
         i = offset + wp.tid()
-        if event[i] >= 0 and event[i] % wp.static(EVENTS) == wp.static(REMOVED_BEHIND):
+        if event[i] >= 0 and event[i] % wp.static(EVENTS) >= wp.static(REMOVED_BEHIND):
             key[i] = REMOVED
 
     @wp.kernel(module=module, enable_backward=False)

@@ -136,6 +136,20 @@ def test_a_particle_that_is_pushed_back_into_an_inlet_has_no_second_successor() 
     assert system.inflows()["inlet"] == passed
 
 
+def test_a_particle_that_is_pushed_back_by_more_than_a_spacing_has_left() -> None:
+    """Its place in the buffer is taken: it is removed, and no kill box has lost it."""
+    sim = Simulation(channel(), device="cpu")
+    sim.advance(0.53)
+    state = fluid(sim, "id")
+    first = state["id"][(state["position"][:, 0] > 0.0) & (state["position"][:, 0] < DP)]
+    (_, _, before), passed = sim.sets[0], sim.system.inflows()["inlet"]
+    move(sim, first, -2.0 * DP)
+    after = sim.system.inflows()["inlet"]
+    assert sim.sets[0][2] == before - len(first) == before - 10
+    assert (after.entered, after.left, after.removed) == (passed.entered, 10, 10)
+    assert sim.removed_count == 0
+
+
 def balance(is_holed: bool) -> tuple[np.ndarray, int]:
     """What the balance of a channel under pressure says after 1 s, and how many particles are beside the channel. In a
     hole of the lower plate three particles have room."""

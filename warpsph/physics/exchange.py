@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import warp as wp
-from warpsph_kernels.exchange import BLOCK, EVENTS, REMOVED_BEHIND, make_exchange_kernels
+from warpsph_kernels.exchange import BLOCK, EVENTS, REMOVED_BEHIND, RETURNED, make_exchange_kernels
 
 from warpsph.particles.launch import Pass
 from warpsph.particles.neighbours import NeighbourSearch, Reordered
@@ -22,8 +22,8 @@ EDGE_MARGIN = 0.5
 class ExchangeModel:
     """The passes of the exchange.
 
-    counts: (patches, 3) particles that have entered the domain, left it into the buffer, and left the buffer at its far
-    end; births: particles that have been made.
+    counts: (patches, EVENTS) particles that have entered the domain, left it into the buffer, left the buffer at its
+    far end, and returned too far into it; births: particles that have been made.
 
     Args:
         followers: all arrays that follow the order of the fluid.
@@ -64,8 +64,8 @@ class ExchangeModel:
 
     @property
     def removed(self) -> int:
-        """Particles that have left buffers at their far ends."""
-        return int(self.counts[:, REMOVED_BEHIND].sum())
+        """Particles that have left buffers at their far ends, or returned too far into one."""
+        return int(self.counts[:, [REMOVED_BEHIND, RETURNED]].sum())
 
     def save(self) -> dict[str, Any]:
         """What a checkpoint has to know beside arrays."""

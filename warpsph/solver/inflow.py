@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from warpsph_kernels.exchange import ENTERED, LEFT, REMOVED_BEHIND
+from warpsph_kernels.exchange import ENTERED, LEFT, REMOVED_BEHIND, RETURNED
 
 from warpsph.frame import Inflow
 from warpsph.particles.state import host_view
 from warpsph.solver.assemble import Parts
+
+_ENTERED, _LEFT, _REMOVED = (ENTERED,), (LEFT, RETURNED), (REMOVED_BEHIND, RETURNED)
 
 
 def inflows(parts: Parts) -> dict[str, Inflow]:
@@ -18,7 +20,8 @@ def inflows(parts: Parts) -> dict[str, Inflow]:
     particle = float(parts.assembly.constants.mass)
     found = {}
     for k, patch in enumerate(opened.model.patches):
-        counts = [int(opened.exchange.counts[k, event]) for event in (ENTERED, LEFT, REMOVED_BEHIND)]
+        events = opened.exchange.counts[k]
+        counts = [int(events[list(kinds)].sum()) for kinds in (_ENTERED, _LEFT, _REMOVED)]
         counted = particle * (counts[0] - counts[1])
         found[patch.name] = Inflow(float(flux[k]), float(mass[k]), counted, *counts)
     return found
