@@ -9,8 +9,9 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
-from warpsph_kernels.fluid import FluidOptions, make_pair_force, make_pressure
+from warpsph_kernels.fluid import make_pair_force, make_pressure
 from warpsph_kernels.lanes import make_lanes
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.wall_barriers import BARRIERS

@@ -13,7 +13,7 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.cells import REMOVED
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.patch import (
     make_across,

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_narrow, make_packing, make_widen
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pose import make_pose_struct
 from warpsph_kernels.structure import STEP, SUB_STEP, make_turned_normal
 

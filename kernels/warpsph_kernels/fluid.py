@@ -4,15 +4,14 @@ Records that the pair loops read: `position_pressure` (x, p), `position_density`
 `velocity_volume` (v, V). The rows of the neighbour list hold fluid in segment 0 and walls in segment 1.
 """
 
-import hashlib
-from dataclasses import dataclass
 from functools import cache
 from typing import Any, NamedTuple
 
 import warp as wp
 
-from warpsph_kernels.arithmetic import Arithmetic, make_narrow, make_packing, make_separation, make_widen
+from warpsph_kernels.arithmetic import make_narrow, make_packing, make_separation, make_widen
 from warpsph_kernels.lanes import make_lanes
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import (
     DIFFUSIONS,
     PRESSURE_FORMS,
@@ -22,54 +21,6 @@ from warpsph_kernels.pair_terms import (
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 from warpsph_kernels.state import STATES
 from warpsph_kernels.wall_barriers import BARRIERS
-
-
-@dataclass(frozen=True)
-class FluidOptions:
-    """Everything that selects fluid and wall code; numbers are in the constants struct instead."""
-
-    arithmetic: Arithmetic
-    periodic: tuple[bool, ...]
-    smoothing: str
-    state: str
-    pressure_form: str
-    density_diffusion: str
-    viscosity: str
-    wall: str
-    """Wall method: none, dynamic, extrapolated, modified_dynamic or repulsive."""
-    wall_suction: bool
-    """Whether walls that are not dynamic may have negative pressure."""
-    wall_friction: bool
-    """Whether some wall is no-slip, so that viscosity acts on pairs of fluid and wall."""
-    stress: str = "none"
-    """What the viscous stress tensor is made of: none, a law of `warpsph_kernels.rheology`, or sub_particle_scale."""
-    particle_order: str = "none"
-    """What spreads the particles evenly: none, transport_velocity or shifting."""
-    density: str = "continuity"
-    """Where the density comes from: continuity, summation or mixed."""
-    kernel_gradient: str = "plain"
-    """First derivatives of pressure and velocity: plain, renormalised or finite_particle."""
-    background_pressure: bool = False
-    """Whether every pair repels with a pressure that is added to that of the state."""
-    tension_cutoff: bool = False
-    """Whether the pressure has a lowest value."""
-    lanes: int = 1
-    """Neighbours that a pair loop takes at a time, see `lanes`."""
-
-    @property
-    def has_barrier(self) -> bool:
-        """Whether wall surfaces push back particles that come too near."""
-        return self.wall in BARRIERS
-
-    @property
-    def module(self) -> str:
-        """Name of the kernel module of these options, the same in every process so that its binary is reused."""
-        digest = hashlib.sha256(repr(self).encode()).hexdigest()[:10]
-        return f"warpsph_fluid_{self.arithmetic.label}_{digest}"
-
-    def module_of(self, concept: str) -> str:
-        """Name of the module of kernels that only some scenes have."""
-        return f"{self.module}_{concept}"
 
 
 class FluidKernels(NamedTuple):
@@ -324,13 +275,15 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         position_density: wp.array(dtype=record),
         velocity_volume: wp.array(dtype=record),
         density_gradient: wp.array(dtype=vector),
+        closing: wp.array(dtype=real),
         density_rate: wp.array(dtype=real),
         density_deviation: wp.array(dtype=real),
     ):
         """One particle: drho_a/dt = rho_a sum_b V_b v_ab . grad_a W_ab + diffusion, then rho over half a step.
 
         The sum runs over fluid and walls, the diffusion over fluid only (Antuono et al. 2010), who also take away the
-        mean of the pair's renormalised `density_gradient` [kg/m^(dim+1)].
+        mean of the pair's renormalised `density_gradient` [kg/m^(dim+1)]. `closing` [1/s] is the rate at which shifts
+        bring particles together, where the density follows it.
         """
         i = offset + wp.tid()
         xd_a = position_density[i]
@@ -392,6 +345,8 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
                 n += wp.static(L)
         divergence = fold_scalar(divergences)
         diffused = fold_scalar(diffusions)
+        if wp.static(options.density_follows):
+            divergence += closing[i]
         rate = (c.rest_density + deviation_a) * divergence + c.diffusion * diffused
         density_rate[i] = rate
         density_deviation[i] = deviation_a + real(wp.float64(0.5) * clock[0]) * rate

@@ -12,7 +12,7 @@ import warp as wp
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.cells import make_cell_functions, make_grid_struct
 from warpsph_kernels.channel_fit import fit_types, make_fit
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.patch import FULL, make_across, make_below_level, make_patch_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS

@@ -14,12 +14,15 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.clock import SPEED
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
 LARGEST_SHIFT = 0.1
 """Of a step, in spacings."""
+FOLLOWING_TIME = 50.0
+"""Over which the density follows what shifts bring together, in times in which sound passes a smoothing length: about a
+hundred steps. At once, the jitter of the shifts would be sound, and take energy from the flow."""
 SURFACE_EIGENVALUE = 0.75
 """Smallest eigenvalue of a particle's moment matrix below which it belongs to the surface (Marrone et al. 2010)."""
 SPRAY_EIGENVALUE = 0.4
@@ -93,13 +96,15 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         shift: wp.array(dtype=vector),
         next_shift: wp.array(dtype=vector),
         coverage: wp.array(dtype=real),
+        closing: wp.array(dtype=real),
         acceleration: wp.array(dtype=vector),
     ):
         """One particle: the momentum that dv carries, where it carries any, and the next dv.
 
         transport_velocity: dv = -2 dt p_b / rho grad C with the background pressure p_b = `strength` rho0 c0^2 (Adami,
         Hu & Adams 2013); shifting: dv = -`strength` h v grad C with the largest speed v of all (Sun et al. 2017), and
-        the smallest eigenvalue of the moment matrix as `coverage`, about one inside.
+        the smallest eigenvalue of the moment matrix as `coverage`, about one inside. `closing`: running mean of
+        -div dv [1/s], where the density follows it.
         """
         i = offset + wp.tid()
         x_a, vV_a = unpack(position_pressure[i]), velocity_volume[i]
@@ -108,6 +113,7 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         concentration = vector()
         carried = vector()
         moment = matrix()
+        rate = real(0.0)
         end = ends[i, 0]
         for n in range(end):
             b = neighbours[i, n]
@@ -116,6 +122,8 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
             F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
             grad = vV_b[dim] * F * x_ab
             concentration += grad
+            if wp.static(options.density_follows):
+                rate += wp.dot(dv_a - shift[b], grad)
             if wp.static(carries):
                 carried += rho_a * wp.dot(dv_a, grad) * v_a + c.mass * F * wp.dot(shift[b], x_ab) * unpack(
                     vV_b
@@ -126,9 +134,14 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
             x_ab = separation(x_a, unpack(position_pressure[neighbours[i, n]]), c.period)
             grad = c.wall_volume * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h) * x_ab
             concentration += grad
+            if wp.static(options.density_follows):
+                rate += wp.dot(dv_a, grad)
             if wp.static(finds_surface):
                 moment -= wp.outer(x_ab, grad)
         dt = real(clock[0])
+        if wp.static(options.density_follows):
+            time = real(wp.static(FOLLOWING_TIME)) * c.smoothing_length / c.sound_speed
+            closing[i] = closing[i] + dt / (time + dt) * (rate - closing[i])
         if wp.static(finds_surface):
             coverage[i] = smallest_eigenvalue(moment)
             next_shift[i] = bounded(

@@ -5,7 +5,7 @@ from typing import Any
 
 import warp as wp
 
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 
 FULL = 1.0e30
 """Height of the water level where none is given [m]: all places lie below it."""

@@ -5,7 +5,7 @@ from typing import Any
 
 import warp as wp
 
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 
 
 @cache

@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import VISCOSITIES, make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 

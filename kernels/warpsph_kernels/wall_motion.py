@@ -6,7 +6,7 @@ from typing import Any
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_narrow, make_packing, make_widen
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pose import make_pose_struct
 
 

@@ -9,8 +9,9 @@ from warpsph_kernels.cells import make_cell_kernels, make_list_kernel
 from warpsph_kernels.clock import make_clock_kernels
 from warpsph_kernels.density_gradient import make_density_gradient
 from warpsph_kernels.faces import make_face_kernels
-from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.fluid import make_fluid_kernels
 from warpsph_kernels.gradient_correction import make_finite_particle_kernels, make_renormalised_kernels
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.particle_order import make_order_kernels
 from warpsph_kernels.stress import make_stress_kernels
 from warpsph_kernels.structure import StructureOptions, make_stress_kernel, make_structure_kernels

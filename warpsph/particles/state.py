@@ -32,6 +32,7 @@ UNITS = {
     "stress": "Pa",
     "shift": "m/s",
     "next_shift": "m/s",
+    "closing": "1/s",
     "coverage": "1",
     "gradient_excess": "1",
     "density_gradient": "kg/m^(dim+1)",

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 import warp as wp
-from warpsph_kernels.fluid import FluidOptions
+from warpsph_kernels.options import FluidOptions
 
 from warpsph.laws.states import StateLaw
 from warpsph.particles.launch import Launcher

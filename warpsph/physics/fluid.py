@@ -6,7 +6,8 @@ from typing import Any
 
 import warp as wp
 from warpsph_kernels.arithmetic import Arithmetic
-from warpsph_kernels.fluid import FluidOptions, make_fluid_kernels
+from warpsph_kernels.fluid import make_fluid_kernels
+from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
 
@@ -46,6 +47,7 @@ def select_code(
         viscosity=_pair_viscosity(scene),
         stress=_stress(scene),
         particle_order=numerics.particle_order.type,
+        density_follows=getattr(numerics.particle_order, "density_follows", False),
         density=numerics.density,
         kernel_gradient=numerics.kernel_gradient,
         background_pressure=numerics.background_pressure > 0.0,
@@ -306,6 +308,7 @@ class FluidModel:
             a.scratch.position_density,
             a.state.velocity_volume,
             gradient,
+            self._order.closing if self._order else a.state.density_rate,
             a.state.density_rate,
             a.state.density_deviation,
         )

@@ -16,7 +16,8 @@ class ParticleOrderModel:
     """The shift velocity of the fluid and the passes that find it.
 
     shift: dv [m/s] of the last step, which the next one begins with; next_shift: that of this step; coverage:
-    smallest eigenvalue of the moment matrix [1], of shifting only.
+    smallest eigenvalue of the moment matrix [1], of shifting only; closing: rate at which shifts bring particles
+    together [1/s], where the density follows it.
     """
 
     def __init__(self, assembly: Assembly, rows: NeighbourRows, order: ParticleOrder, spacing: float) -> None:
@@ -29,6 +30,9 @@ class ParticleOrderModel:
         self.shift = wp.zeros(fluids, dtype=arithmetic.vector, device=device)
         self.next_shift = wp.zeros(fluids, dtype=arithmetic.vector, device=device)
         self.coverage = wp.zeros(fluids if self._finds_surface else 1, dtype=arithmetic.real, device=device)
+        follows = assembly.options.density_follows
+        self.closing = wp.zeros(fluids if follows else 1, dtype=arithmetic.real, device=device)
+        self._following = {"closing": self.closing} if follows else {}
         self.largest_shift = LARGEST_SHIFT * spacing
         self.complete_coverage: Callable[[], None] | None = None
         """What the coverage of particles lacks whose neighbours are not all there."""
@@ -37,12 +41,13 @@ class ParticleOrderModel:
     @property
     def own_arrays(self) -> dict[str, wp.array]:
         """Arrays of shape (fluids,) that follow the order of the fluid and belong into a checkpoint."""
-        return {"shift": self.shift}
+        return {"shift": self.shift} | self._following
 
     @property
     def arrays(self) -> dict[str, wp.array]:
         """All arrays of the model, by name."""
-        return {"shift": self.shift, "next_shift": self.next_shift, "coverage": self.coverage}
+        found = {"shift": self.shift, "next_shift": self.next_shift, "coverage": self.coverage}
+        return found | self._following
 
     @property
     def passes(self) -> list[str]:
@@ -62,6 +67,7 @@ class ParticleOrderModel:
             self.shift,
             self.next_shift,
             self.coverage,
+            self.closing,
             a.state.acceleration,
         )
         self._limit = a.launcher.bind(

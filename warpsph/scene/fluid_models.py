@@ -10,7 +10,7 @@ from pydantic import Field
 from warpsph.laws.states import STATE_LAWS
 from warpsph.laws.viscosities import VISCOSITY_LAWS
 from warpsph.scene.expressions import Expression
-from warpsph.scene.types import NonNegativeReal, PositiveReal, Real, SceneModel
+from warpsph.scene.types import Flag, NonNegativeReal, PositiveReal, Real, SceneModel
 
 
 class Tait(SceneModel):
@@ -238,6 +238,9 @@ class TransportVelocity(SceneModel):
     type: Literal["transport_velocity"] = "transport_velocity"
     background: Annotated[Real, Field(gt=0.0, le=10.0)] = 1.0
     """Background pressure in units of density * sound_speed^2 [1]. Default: 1."""
+    density_follows: Flag = False
+    """Whether the density follows, within about a hundred steps, where particles are moved together or apart; without
+    it, the particles between open boundaries grow fewer at the same density. Default: false."""
 
     @property
     def strength(self) -> float:

@@ -150,6 +150,9 @@ def _numerics_problems(scene: Scene) -> Iterator[Problem]:
     if numerics.pressure_form == "riemann" and numerics.viscosity.type == "artificial":
         message = "the Riemann solver of pressure_form: riemann takes the place of an artificial viscosity"
         yield Problem.at("numerics.viscosity.type", message, "any other viscosity, or none", "artificial")
+    if numerics.density == "summation" and getattr(numerics.particle_order, "density_follows", False):
+        message = "a summed density follows every particle"
+        yield Problem.at("numerics.particle_order.density_follows", message, "false", True)
     if numerics.density == "summation" and numerics.density_diffusion.type != "none":
         message = "a density that is summed obeys no equation that could be diffused"
         yield Problem.at("numerics.density_diffusion.type", message, "none", numerics.density_diffusion.type)
