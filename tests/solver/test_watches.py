@@ -214,8 +214,8 @@ def test_fluid_behind_walls_is_found_where_they_are_now() -> None:
     finder = LeakFinder(Scene(**base))
     places = {
         (0.2, 0.2): set(),
-        (-0.04, 0.2): set(),  # less than half a spacing
-        (-0.06, 0.2): {"tank"},
+        (-0.09, 0.2): set(),  # less than a spacing
+        (-0.11, 0.2): {"tank"},
         (-5.0, 0.2): {"tank"},  # beyond its layers, and in no other tank
         (0.2, -2.5): set(),  # beyond them, in the other tank
         (0.2, -1.8): {"closed"},  # behind its lid
@@ -330,10 +330,10 @@ def test_a_particle_that_comes_back_has_not_leaked() -> None:
     home = np.array(host_view(position))
     strayed = home.copy()
     first = int(np.argmin(home[:25, 0]))
-    strayed[first, 0] = -0.1
+    strayed[first, 0] = -0.15
     for places, warnings in ((strayed, 0), (home, 0), (strayed, 0), (strayed, 1), (strayed, 1)):
         write_array(position, places)
         watch.look(sim)
         assert len(watch.warnings) == warnings
     assert watch.record() == {"at_last": 1, "at_most": 1, "ignored": []}
-    assert f"particle {int(host_view(sim.array('id'))[first])} of water at (-0.1," in watch.warnings[0]
+    assert f"particle {int(host_view(sim.array('id'))[first])} of water at (-0.15," in watch.warnings[0]

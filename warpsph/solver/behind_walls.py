@@ -14,14 +14,17 @@ from warpsph.scene.shapes import Plane
 
 
 class BehindWalls:
-    """Tells places more than half a spacing behind the surface of a wall, wherever its motion has put it.
+    """Tells places more than a spacing behind the surface of a wall, wherever its motion has put it.
+
+    That far behind it the first layer of its particles ends; into a notch of that layer, as where a structure begins,
+    fluid may be pressed.
 
     Behind an obstacle is its inside. Behind a tank, or a plane of some extent, are its layers, since farther out there
     may be other tanks; but what is outside of all tanks, and not before an open face of one, is behind the nearest.
     """
 
     def __init__(self, scene: Scene) -> None:
-        self._half = 0.5 * scene.spacing
+        self._spacing = scene.spacing
         self._walls = dict(scene.boundaries)
         self._motions: Mapping[str, RigidMotion] = rigid_motions(scene)
         self._tanks = [name for name, wall in self._walls.items() if _is_tank(wall)]
@@ -35,12 +38,12 @@ class BehindWalls:
     def rows(self, points: np.ndarray, time: float) -> dict[str, np.ndarray]:
         """Rows of the points (n, dim) [m] that lie behind each wall at a time [s]."""
         depths = {name: self._depth(name, points, time) for name in self._walls}
-        behind = {name: depth > self._half for name, depth in depths.items()}
+        behind = {name: depth > self._spacing for name, depth in depths.items()}
         for name, thickness in self._thickness.items():
-            behind[name] &= depths[name] < thickness - self._half
+            behind[name] &= depths[name] < thickness - 0.5 * self._spacing
         if self._tanks:
             outside = np.stack([depths[name] for name in self._tanks])
-            lost, nearest = outside.min(axis=0) > self._half, outside.argmin(axis=0)
+            lost, nearest = outside.min(axis=0) > self._spacing, outside.argmin(axis=0)
             for k, name in enumerate(self._tanks):
                 behind[name] |= lost & (nearest == k)
         return {name: np.flatnonzero(found) for name, found in behind.items()}

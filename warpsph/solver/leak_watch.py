@@ -55,8 +55,8 @@ class LeakWatch:
 
     def _in_words(self, sim: Simulation, place: Place, particle: Culprit) -> str:
         return (
-            f"fluid leaked: since t = {self._seen[place]:.6g} s or earlier {particle} is more than half a spacing "
-            f"behind the surface of {place[1]}, at t = {sim.time:.6g} s one of {self._now} such particles. {ADVICE}"
+            f"fluid leaked: since t = {self._seen[place]:.6g} s or earlier {particle} is behind the surface of "
+            f"{place[1]}, at t = {sim.time:.6g} s one of {self._now} such particles. {ADVICE}"
         )
 
     def _leaks(self, sim: Simulation) -> list[Leak]:

@@ -31,8 +31,9 @@ class Leak:
 
 
 class LeakFinder:
-    """Finds particles of fluid that are more than half a spacing behind the surface of a wall or structure.
+    """Finds particles of fluid a spacing behind the surface of a wall, or half a spacing inside of a structure.
 
+    A plate is two particles thick at least, so that it has places of that depth.
     A place in a deformed structure is taken back to the body at rest by the affine map that fits its nearest particles
     best.
     """
