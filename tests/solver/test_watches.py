@@ -225,7 +225,7 @@ def test_fluid_behind_walls_is_found_where_they_are_now() -> None:
         (0.2, 4.5): set(),  # beyond its layers
         (1.2, 4.85): set(),  # beside it
         (4.5, 0.5): {"block"} | {"tank"},
-        (4.5, 0.9): {"block"},
+        (4.5, 0.85): {"block"},
         (3.5, 0.9): set(),  # where the block was
     }
     position = np.array(list(places))
