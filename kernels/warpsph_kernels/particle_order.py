@@ -125,9 +125,8 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
             if wp.static(options.density_follows):
                 rate += wp.dot(dv_a - shift[b], grad)
             if wp.static(carries):
-                carried += rho_a * wp.dot(dv_a, grad) * v_a + c.mass * F * wp.dot(shift[b], x_ab) * unpack(
-                    vV_b
-                )
+                v_b = unpack(vV_b)
+                carried += rho_a * wp.dot(dv_a, grad) * v_a + c.mass * F * wp.dot(shift[b], x_ab) * v_b
             if wp.static(finds_surface):
                 moment -= wp.outer(x_ab, grad)
         for n in range(end, ends[i, ends.shape[1] - 1]):

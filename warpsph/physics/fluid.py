@@ -146,6 +146,7 @@ class FluidModel:
             self._correction = GradientCorrection(assembly, rows)
         self._kernels = make_fluid_kernels(options)
         self._none = wp.zeros(1, dtype=options.arithmetic.vector, device=assembly.launcher.device)
+        self._no_rate = wp.zeros(1, dtype=options.arithmetic.real, device=assembly.launcher.device)
         self._bind_points()
         self._bind_sums()
 
@@ -308,7 +309,7 @@ class FluidModel:
             a.scratch.position_density,
             a.state.velocity_volume,
             gradient,
-            self._order.closing if self._order else a.state.density_rate,
+            self._order.closing if self._order else self._no_rate,
             a.state.density_rate,
             a.state.density_deviation,
         )

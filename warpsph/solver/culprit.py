@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from warpsph.frame import SetFrame
+from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.simulation import Simulation
 
 
@@ -21,6 +22,19 @@ class Culprit:
     def __str__(self) -> str:
         place = ", ".join(f"{x:.6g}" for x in self.position)
         return f"particle {self.particle} of {self.set} at ({place}) m"
+
+    def diverged(self, sim: Simulation, limit: str, value: float, advice: str) -> SimulationDiverged:
+        """What stops a run now because of this particle."""
+        return SimulationDiverged(
+            set=self.set,
+            particle=self.particle,
+            position=self.position,
+            time=sim.time,
+            step=sim.step_count,
+            limit=limit,
+            value=value,
+            advice=advice,
+        )
 
 
 def particle_at(found: SetFrame, row: int) -> Culprit:

@@ -138,18 +138,11 @@ class EnergyWatch:
             )
 
     def _stopped(self, sim: Simulation, source: float) -> SimulationDiverged:
-        culprit = particle_with_extreme(sim, "velocity")
-        return SimulationDiverged(
-            set=culprit.set,
-            particle=culprit.particle,
-            position=culprit.position,
-            time=sim.time,
-            step=sim.step_count,
-            limit="it is the fastest of all, whose energy has grown by more than all that there was to gain it from, "
-            f"{source:.3g} J",
-            value=self._gained,
-            advice=ADVICE,
+        limit = (
+            "it is the fastest of all, whose energy has grown by more than all that there was to gain it from, "
+            f"{source:.3g} J"
         )
+        return particle_with_extreme(sim, "velocity").diverged(sim, limit, self._gained, ADVICE)
 
     def _balance(self, sim: Simulation) -> _Balance:
         asked = {"velocity", "mass", "density", "pressure", "work", *STORED}

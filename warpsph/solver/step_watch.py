@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from typing import Any
 
-from warpsph.solver.culprit import particle_with_extreme
+from warpsph.solver.culprit import Culprit, particle_with_extreme
 from warpsph.solver.errors import SimulationDiverged
 from warpsph.solver.simulation import Simulation
 
@@ -89,8 +89,7 @@ class StepWatch:
 
     def _in_words(self, sim: Simulation) -> str:
         step = sim.last_step
-        culprit = particle_with_extreme(sim, FIELDS.get(step.limit, "velocity"))
-        advice = ADVICE.get(step.limit, OTHER_ADVICE)
+        culprit, advice = self._blamed(sim)
         return (
             f"from t = {self._began:.6g} s on the step was below {COLLAPSED:.0%} of its median {self._median:.3g} s "
             f"for {self._short[COLLAPSED]} steps in a row, at last {step.dt:.3g} s, by the limit '{step.limit}' at "
@@ -99,18 +98,18 @@ class StepWatch:
 
     def _stopped(self, sim: Simulation) -> SimulationDiverged:
         step = sim.last_step
-        culprit = particle_with_extreme(sim, FIELDS.get(step.limit, "velocity"))
-        return SimulationDiverged(
-            set=culprit.set,
-            particle=culprit.particle,
-            position=culprit.position,
-            time=sim.time,
-            step=sim.step_count,
-            limit=f"the step, limited by '{step.limit}', has been below {HOPELESS:g} of its median "
-            f"{self._median:.3g} s for {LONG} steps",
-            value=step.dt,
-            advice=ADVICE.get(step.limit, OTHER_ADVICE),
+        culprit, advice = self._blamed(sim)
+        limit = (
+            f"the step, limited by '{step.limit}', has been below {HOPELESS:g} of its median "
+            f"{self._median:.3g} s for {LONG} steps"
         )
+        return culprit.diverged(sim, limit, step.dt, advice)
+
+    def _blamed(self, sim: Simulation) -> tuple[Culprit, str]:
+        """The particle where the limit rules, and the advice that helps against it."""
+        limit = sim.last_step.limit
+        culprit = particle_with_extreme(sim, FIELDS.get(limit, "velocity"))
+        return culprit, ADVICE.get(limit, OTHER_ADVICE)
 
     def record(self) -> dict[str, Any]:
         """Median step [s], and the shortest part of it that lasted."""
