@@ -131,7 +131,7 @@ def make_separation(arithmetic: Arithmetic, periodic: tuple[bool, ...]) -> Any:
         x_ab = x_a - x_b
         for k in range(wp.static(dim)):
             if wp.static(periodic[k]):
-                x_ab[k] = x_ab[k] - period[k] * wp.round(x_ab[k] / period[k])
+                x_ab[k] = x_ab[k] - period[k] * wp.rint(x_ab[k] / period[k])
         return x_ab
 
     return wp.func(separation)

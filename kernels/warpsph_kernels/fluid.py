@@ -293,7 +293,7 @@ def make_fluid_kernels(options: FluidOptions) -> FluidKernels:
         diffusions = scalars_type()
         gradient_a = vector()
         if wp.static(options.density_diffusion == "delta_sph"):
-            gradient_a = density_gradient[i]
+            gradient_a = vector(density_gradient[i])
         end = ends[i, 0]
         n = int(0)
         while n < end:

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
+from warpsph_kernels.lanes import make_lanes
 from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.renormalisation import SMALLEST_EIGENVALUE, make_correction
@@ -38,6 +39,9 @@ def make_renormalised_kernels(options: FluidOptions) -> CorrectionKernels:
     separation = make_separation(arithmetic, options.periodic)
     _, slope = SMOOTHING_KERNELS[options.smoothing].make(arithmetic)
     correction_of = make_correction(arithmetic)
+    lanes, L = make_lanes(arithmetic, options.lanes), options.lanes
+    take, records, matrices = lanes.take, lanes.records, lanes.matrices
+    sums_type, tensors_type, fold, fold_tensor = lanes.sums, lanes.tensors, lanes.fold, lanes.fold_tensor
 
     @wp.kernel(module=module, enable_backward=False)
     def find_correction(
@@ -52,13 +56,28 @@ def make_renormalised_kernels(options: FluidOptions) -> CorrectionKernels:
         """One particle: L_a - I over fluid and walls."""
         i = offset + wp.tid()
         x_a = unpack(position_pressure[i])
-        moment = matrix()
-        for n in range(ends[i, ends.shape[1] - 1]):
-            b = neighbours[i, n]
-            x_ab = separation(x_a, unpack(position_pressure[b]), c.period)
-            F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
-            moment -= velocity_volume[b][dim] * F * wp.outer(x_ab, x_ab)
-        excess[i] = correction_of(moment) - wp.identity(n=wp.static(dim), dtype=real)
+        moments = tensors_type()
+        end = ends[i, ends.shape[1] - 1]
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            vV_b = records(velocity_volume, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                V_b = wp.where(n + k < end, vV_b[k + wp.static(L * dim)], real(0.0))
+                x_ab = separation(x_a, x_b, c.period)
+                grad = V_b * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h) * x_ab
+                for d in range(wp.static(dim)):
+                    for e in range(wp.static(dim)):
+                        place = k + wp.static(L) * (wp.static(dim) * d + e)
+                        moments[place] = moments[place] - x_ab[d] * grad[e]
+                k += 1
+            n += wp.static(L)
+        excess[i] = correction_of(fold_tensor(moments)) - wp.identity(n=wp.static(dim), dtype=real)
 
     @wp.kernel(module=module, enable_backward=False)
     def correct_pressure(
@@ -76,14 +95,30 @@ def make_renormalised_kernels(options: FluidOptions) -> CorrectionKernels:
         xp_a = position_pressure[i]
         x_a = unpack(xp_a)
         own = xp_a[dim] * excess[i]
-        total = vector()
-        for n in range(ends[i, 0]):
-            b = neighbours[i, n]
-            xp_b = position_pressure[b]
-            x_ab = separation(x_a, unpack(xp_b), c.period)
-            F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
-            total += velocity_volume[b][dim] * F * ((own + xp_b[dim] * excess[b]) * x_ab)
-        acceleration[i] = acceleration[i] - velocity_volume[i][dim] / c.mass * total
+        sums = sums_type()
+        end = ends[i, 0]
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            vV_b = records(velocity_volume, b, 0)
+            excesses = matrices(excess, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                p_b = xp_b[k + wp.static(L * dim)]
+                V_b = wp.where(n + k < end, vV_b[k + wp.static(L * dim)], real(0.0))
+                x_ab = separation(x_a, x_b, c.period)
+                grad = V_b * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h) * x_ab
+                for d in range(wp.static(dim)):
+                    for e in range(wp.static(dim)):
+                        both = own[d, e] + p_b * excesses[k + wp.static(L) * (wp.static(dim) * d + e)]
+                        sums[k + wp.static(L) * d] = sums[k + wp.static(L) * d] + both * grad[e]
+                k += 1
+            n += wp.static(L)
+        acceleration[i] = acceleration[i] - velocity_volume[i][dim] / c.mass * fold(sums)
 
     @wp.kernel(module=module, enable_backward=False)
     def correct_divergence(
@@ -101,16 +136,34 @@ def make_renormalised_kernels(options: FluidOptions) -> CorrectionKernels:
         i = offset + wp.tid()
         xd_a = position_density[i]
         x_a, v_a = unpack(xd_a), unpack(velocity_volume[i])
-        gradient = matrix()
-        moment = matrix()
-        for n in range(ends[i, ends.shape[1] - 1]):
-            b = neighbours[i, n]
-            vV_b = velocity_volume[b]
-            x_ab = separation(x_a, unpack(position_density[b]), c.period)
-            grad = vV_b[dim] * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h) * x_ab
-            gradient += wp.outer(unpack(vV_b) - v_a, grad)
-            moment -= wp.outer(x_ab, grad)
-        beyond = wp.trace(gradient * correction_of(moment)) - wp.trace(gradient)
+        gradients = tensors_type()
+        moments = tensors_type()
+        end = ends[i, ends.shape[1] - 1]
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xd_b = records(position_density, b, 0)
+            vV_b = records(velocity_volume, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                v_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xd_b[k + wp.static(L * d)]
+                    v_b[d] = vV_b[k + wp.static(L * d)]
+                V_b = wp.where(n + k < end, vV_b[k + wp.static(L * dim)], real(0.0))
+                x_ab = separation(x_a, x_b, c.period)
+                grad = V_b * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h) * x_ab
+                v_ba = v_b - v_a
+                for d in range(wp.static(dim)):
+                    for e in range(wp.static(dim)):
+                        place = k + wp.static(L) * (wp.static(dim) * d + e)
+                        gradients[place] = gradients[place] + v_ba[d] * grad[e]
+                        moments[place] = moments[place] - x_ab[d] * grad[e]
+                k += 1
+            n += wp.static(L)
+        gradient = fold_tensor(gradients)
+        beyond = wp.trace(gradient * correction_of(fold_tensor(moments))) - wp.trace(gradient)
         rate = -(c.rest_density + xd_a[dim]) * beyond
         density_rate[i] = density_rate[i] + rate
         density_deviation[i] = density_deviation[i] + real(wp.float64(0.5) * clock[0]) * rate

@@ -19,7 +19,8 @@ neighbour, and the same code is the plain loop.
     total = lanes.fold(sums)
 
 The blocks are indexed in the kernel itself: a function that takes one copies it. The loops are `while` loops because
-Warp unrolls a `for` over a few iterations, and what is unrolled is not vectorised.
+Warp unrolls a `for` over a few iterations, and what is unrolled is not vectorised. What a particle has of its own is
+copied before the loop, `vector(shift[i])`: Warp reads `shift[i]` where it is used, which keeps loops from being vectorised.
 """
 
 from dataclasses import dataclass
@@ -42,9 +43,10 @@ class Lanes:
     """A number of lanes with the functions of a blocked pair loop.
 
     take(neighbours, row, first, end): `count` indices of a row from `first` on, the last one again beyond `end`;
-    records(array, index, offset) and vectors(array, index, offset): the components of the entries index - offset, lane
-    after lane; numbers(array, index): entries that are numbers; stretch(array, first): the vectors from `first` on, one
-    after the other; fold(sums): the vector that the lanes' vectors add up to, fold_scalar(sums) the same of numbers.
+    records(array, index, offset), vectors and matrices: the components of the entries index - offset, lane after lane,
+    those of matrices row by row; numbers(array, index): entries that are numbers; stretch(array, first): the vectors
+    from `first` on, one after the other; fold(sums): the vector that the lanes' vectors add up to, fold_scalar and
+    fold_tensor the same of numbers and of matrices.
     """
 
     count: int
@@ -52,15 +54,19 @@ class Lanes:
     """Type of a vector for each lane, component after component."""
     scalars: Any
     """Type of a number for each lane."""
+    tensors: Any
+    """Type of a matrix for each lane, component after component."""
     take: Any
     records: Any
     vectors: Any
+    matrices: Any
     numbers: Any
     stretch: Any
     hits: Any
     """Type of a whole number for each lane."""
     fold: Any
     fold_scalar: Any
+    fold_tensor: Any
 
 
 @cache
@@ -68,6 +74,7 @@ def make_lanes(arithmetic: Arithmetic, count: int) -> Lanes:
     """Return the lanes of an arithmetic: so many at a time, a power of two from 8 on, or one."""
     dim, real, vector = arithmetic.dimension, arithmetic.real, arithmetic.vector
     sums, scalars = wp.types.vector(count * dim, real), wp.types.vector(count, real)
+    matrix, tensors = arithmetic.matrix, wp.types.vector(count * dim * dim, real)
 
     @wp.func
     def fold(lanes: sums):
@@ -88,18 +95,32 @@ def make_lanes(arithmetic: Arithmetic, count: int) -> Lanes:
             k += 1
         return total
 
+    @wp.func
+    def fold_tensor(lanes: tensors):
+        total = matrix()
+        for d in range(wp.static(dim)):
+            for e in range(wp.static(dim)):
+                k = int(0)
+                while k < wp.static(count):
+                    total[d, e] = total[d, e] + lanes[wp.static(count) * (wp.static(dim) * d + e) + k]
+                    k += 1
+        return total
+
     return Lanes(
         count=count,
         sums=sums,
         scalars=scalars,
+        tensors=tensors,
         take=_make_take(count),
         records=_make_gather(arithmetic, arithmetic.record, dim + 1, count),
         vectors=_make_gather(arithmetic, vector, dim, count),
+        matrices=_make_gather(arithmetic, matrix, dim * dim, count),
         numbers=_make_pick(arithmetic, count),
         stretch=_make_stretch(arithmetic, count),
         hits=wp.types.vector(count, wp.int32),
         fold=fold,
         fold_scalar=fold_scalar,
+        fold_tensor=fold_tensor,
     )
 
 
@@ -133,6 +154,7 @@ def _make_take(count: int) -> Any:
 @cache
 def _make_gather(arithmetic: Arithmetic, entry: Any, width: int, count: int) -> Any:
     """The function that loads `count` entries of `width` components, transposed."""
+    dim = arithmetic.dimension
     indices = wp.types.vector(count, wp.int32)
     block = wp.types.vector(count * width, arithmetic.real)
 
@@ -144,8 +166,17 @@ def _make_gather(arithmetic: Arithmetic, entry: Any, width: int, count: int) -> 
             out[d] = loaded[d]
         return out
 
+    @wp.func
+    def gather_one_matrix(array: wp.array(dtype=entry), index: indices, offset: int):
+        loaded = array[index[0] - offset]
+        out = block()
+        for d in range(wp.static(dim)):
+            for e in range(wp.static(dim)):
+                out[wp.static(dim) * d + e] = loaded[d, e]
+        return out
+
     if count == 1:
-        return gather_one
+        return gather_one_matrix if entry is arithmetic.matrix else gather_one
     snippet = _transposing_loads(C_TYPES[arithmetic.precision], width, count)
 
     @wp.func_native(snippet)
@@ -195,22 +226,35 @@ def _make_stretch(arithmetic: Arithmetic, count: int) -> Any:
 
 
 def _transposing_loads(c_type: str, width: int, count: int) -> str:
-    """C++ that loads entries into registers of four, joins every fourth of them, and interleaves the four joined ones
-    twice; then each holds one component of all lanes."""
+    """C++ that loads entries and transposes them, four components at a time."""
     size = 4 if c_type == "float" else 8
-    groups = count // REGISTER
     lines = [
         f"typedef {c_type} entry_t __attribute__((vector_size({REGISTER * size})));",
-        "const char* base = (const char*)array.data;",
+        f"const {c_type}* base = (const {c_type}*)array.data;",
+        f"wp::vec_t<{count * width}, {c_type}> out;",
     ]
+    for first in range(0, width, REGISTER):
+        lines += ["{", *_transposed_register(first, min(REGISTER, width - first), width, size, count), "}"]
+    return "\n".join([*lines, "return out;"])
+
+
+def _transposed_register(first: int, components: int, width: int, size: int, count: int) -> list[str]:
+    """C++ that loads components from `first` on into registers of four, joins every fourth of them, and interleaves the
+    four joined ones twice; then each holds one component of all lanes."""
+    groups = count // REGISTER
+    lines = []
     for lane in range(count):
-        place = f"base + {width * size} * (long long)(index.c[{lane}] - offset)"
-        lines.append(f"entry_t r{lane} = {{}}; __builtin_memcpy(&r{lane}, {place}, {width * size});")
+        place = f"base + {width} * (long long)(index.c[{lane}] - offset) + {first}"
+        if components == REGISTER:
+            lines.append(f"entry_t r{lane}; __builtin_memcpy(&r{lane}, {place}, {REGISTER * size});")
+        else:  # a copy of fewer components would go through memory
+            parts = ", ".join(f"({place})[{d}]" for d in range(components))
+            lines.append(f"entry_t r{lane} = {{{parts}}};")
     for q in range(REGISTER):
         joined = _joined([f"r{q + REGISTER * g}" for g in range(groups)])
         lines.append(f"auto a{q} = {joined};")
     low, high = (0, 4, 1, 5), (2, 6, 3, 7)
-    for name, first, second, pattern in (
+    for name, one, other, pattern in (
         ("t0", "a0", "a1", low),
         ("t1", "a0", "a1", high),
         ("t2", "a2", "a3", low),
@@ -220,10 +264,11 @@ def _transposing_loads(c_type: str, width: int, count: int) -> str:
         ("c2", "t1", "t3", (0, 1, 4, 5)),
         ("c3", "t1", "t3", (2, 3, 6, 7)),
     ):
-        lines.append(f"auto {name} = {_shuffled(first, second, pattern, groups)};")
-    lines.append(f"wp::vec_t<{count * width}, {c_type}> out;")
-    lines += [f"__builtin_memcpy(&out.c[{count * d}], &c{d}, {count * size});" for d in range(width)]
-    return "\n".join([*lines, "return out;"])
+        lines.append(f"auto {name} = {_shuffled(one, other, pattern, groups)};")
+    lines += [
+        f"__builtin_memcpy(&out.c[{count * (first + d)}], &c{d}, {count * size});" for d in range(components)
+    ]
+    return lines
 
 
 def _joined(names: list[str], width: int = REGISTER) -> str:

@@ -14,6 +14,7 @@ import warp as wp
 
 from warpsph_kernels.arithmetic import make_packing, make_separation
 from warpsph_kernels.clock import SPEED
+from warpsph_kernels.lanes import make_lanes
 from warpsph_kernels.options import FluidOptions
 from warpsph_kernels.pair_terms import make_constants_struct
 from warpsph_kernels.smoothing import SMOOTHING_KERNELS
@@ -76,6 +77,11 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
     smallest_eigenvalue = make_smallest_eigenvalue(options)
     finds_surface = options.particle_order == "shifting"
     carries = options.particle_order == "transport_velocity"
+    reads_shift = carries or options.density_follows
+    lanes, L = make_lanes(arithmetic, options.lanes), options.lanes
+    take, records, vectors, numbers = lanes.take, lanes.records, lanes.vectors, lanes.numbers
+    sums_type, scalars_type, tensors_type = lanes.sums, lanes.scalars, lanes.tensors
+    fold, fold_scalar, fold_tensor = lanes.fold, lanes.fold_scalar, lanes.fold_tensor
 
     def bounded(c: constants_type, dv: vector, dt: real):
         largest = real(wp.static(LARGEST_SHIFT)) / (c.inverse_spacing * dt)
@@ -108,41 +114,78 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         """
         i = offset + wp.tid()
         x_a, vV_a = unpack(position_pressure[i]), velocity_volume[i]
-        v_a, dv_a = unpack(vV_a), shift[i]
+        v_a, dv_a = unpack(vV_a), vector(shift[i])
         rho_a = c.mass / vV_a[dim]
-        concentration = vector()
-        carried = vector()
-        moment = matrix()
-        rate = real(0.0)
+        concentrations = sums_type()
+        carried = sums_type()
+        moments = tensors_type()
+        rates = scalars_type()
         end = ends[i, 0]
-        for n in range(end):
-            b = neighbours[i, n]
-            vV_b = velocity_volume[b]
-            x_ab = separation(x_a, unpack(position_pressure[b]), c.period)
-            F = c.slope_norm * slope(wp.length(x_ab) * c.inverse_h)
-            grad = vV_b[dim] * F * x_ab
-            concentration += grad
-            if wp.static(options.density_follows):
-                rate += wp.dot(dv_a - shift[b], grad)
-            if wp.static(carries):
-                v_b = unpack(vV_b)
-                carried += rho_a * wp.dot(dv_a, grad) * v_a + c.mass * F * wp.dot(shift[b], x_ab) * v_b
-            if wp.static(finds_surface):
-                moment -= wp.outer(x_ab, grad)
-        for n in range(end, ends[i, ends.shape[1] - 1]):
-            x_ab = separation(x_a, unpack(position_pressure[neighbours[i, n]]), c.period)
-            grad = c.wall_volume * c.slope_norm * slope(wp.length(x_ab) * c.inverse_h) * x_ab
-            concentration += grad
-            if wp.static(options.density_follows):
-                rate += wp.dot(dv_a, grad)
-            if wp.static(finds_surface):
-                moment -= wp.outer(x_ab, grad)
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            vV_b = records(velocity_volume, b, 0)
+            if wp.static(reads_shift):
+                shifts_b = vectors(shift, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                v_b = vector()
+                dv_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                    v_b[d] = vV_b[k + wp.static(L * d)]
+                    if wp.static(reads_shift):
+                        dv_b[d] = shifts_b[k + wp.static(L * d)]
+                x_ab = separation(x_a, x_b, c.period)
+                F = wp.where(n + k < end, c.slope_norm * slope(wp.length(x_ab) * c.inverse_h), real(0.0))
+                grad = vV_b[k + wp.static(L * dim)] * F * x_ab
+                if wp.static(options.density_follows):
+                    rates[k] = rates[k] + wp.dot(dv_a - dv_b, grad)
+                out_of_a = rho_a * wp.dot(dv_a, grad)
+                out_of_b = c.mass * F * wp.dot(dv_b, x_ab)
+                for d in range(wp.static(dim)):
+                    concentrations[k + wp.static(L) * d] = concentrations[k + wp.static(L) * d] + grad[d]
+                    if wp.static(carries):
+                        momentum = out_of_a * v_a[d] + out_of_b * v_b[d]
+                        carried[k + wp.static(L) * d] = carried[k + wp.static(L) * d] + momentum
+                    if wp.static(finds_surface):
+                        for e in range(wp.static(dim)):
+                            place = k + wp.static(L) * (wp.static(dim) * d + e)
+                            moments[place] = moments[place] - x_ab[d] * grad[e]
+                k += 1
+            n += wp.static(L)
+        n = int(end)
+        end = ends[i, ends.shape[1] - 1]
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                x_ab = separation(x_a, x_b, c.period)
+                F = wp.where(n + k < end, c.slope_norm * slope(wp.length(x_ab) * c.inverse_h), real(0.0))
+                grad = c.wall_volume * F * x_ab
+                if wp.static(options.density_follows):
+                    rates[k] = rates[k] + wp.dot(dv_a, grad)
+                for d in range(wp.static(dim)):
+                    concentrations[k + wp.static(L) * d] = concentrations[k + wp.static(L) * d] + grad[d]
+                    if wp.static(finds_surface):
+                        for e in range(wp.static(dim)):
+                            place = k + wp.static(L) * (wp.static(dim) * d + e)
+                            moments[place] = moments[place] - x_ab[d] * grad[e]
+                k += 1
+            n += wp.static(L)
+        concentration = fold(concentrations)
         dt = real(clock[0])
         if wp.static(options.density_follows):
             time = real(wp.static(FOLLOWING_TIME)) * c.smoothing_length / c.sound_speed
-            closing[i] = closing[i] + dt / (time + dt) * (rate - closing[i])
+            closing[i] = closing[i] + dt / (time + dt) * (fold_scalar(rates) - closing[i])
         if wp.static(finds_surface):
-            coverage[i] = smallest_eigenvalue(moment)
+            coverage[i] = smallest_eigenvalue(fold_tensor(moments))
             next_shift[i] = bounded(
                 c, -strength * c.smoothing_length * real(clock[wp.static(SPEED)]) * concentration, dt
             )
@@ -150,7 +193,7 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
             push = real(2.0) * dt * strength * c.sound_speed * c.sound_speed
             next_shift[i] = bounded(c, -push * concentration, dt)
         if wp.static(carries):
-            acceleration[i] = acceleration[i] + vV_a[dim] / c.mass * carried
+            acceleration[i] = acceleration[i] + vV_a[dim] / c.mass * fold(carried)
 
     @wp.kernel(module=module, enable_backward=False)
     def limit_at_surface(
@@ -170,16 +213,39 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
         """
         i = offset + wp.tid()
         x_a = unpack(position_pressure[i])
-        covered = coverage[i]
-        least = covered
-        outward = vector()
-        for n in range(ends[i, 0]):
-            b = neighbours[i, n]
-            x_ab = separation(x_a, unpack(position_pressure[b]), c.period)
-            VF = velocity_volume[b][dim] * slope(wp.length(x_ab) * c.inverse_h)
-            outward -= (coverage[b] - covered) * VF * x_ab
-            if real(0.0) > VF:
-                least = wp.min(least, coverage[b])
+        covered = real(coverage[i])
+        outward_sums = sums_type()
+        bareness = scalars_type()  # how much less than this one neighbours are covered
+        end = ends[i, 0]
+        n = int(0)
+        while n < end:
+            b = take(neighbours, i, n, end)
+            xp_b = records(position_pressure, b, 0)
+            vV_b = records(velocity_volume, b, 0)
+            covered_b = numbers(coverage, b)
+            k = int(0)
+            while k < wp.static(L):
+                x_b = vector()
+                for d in range(wp.static(dim)):
+                    x_b[d] = xp_b[k + wp.static(L * d)]
+                x_ab = separation(x_a, x_b, c.period)
+                V_b = wp.where(n + k < end, vV_b[k + wp.static(L * dim)], real(0.0))
+                VF = V_b * slope(wp.length(x_ab) * c.inverse_h)
+                barer = covered - covered_b[k]
+                for d in range(wp.static(dim)):
+                    outward_sums[k + wp.static(L) * d] = (
+                        outward_sums[k + wp.static(L) * d] + barer * VF * x_ab[d]
+                    )
+                bareness[k] = wp.max(bareness[k], wp.where(real(0.0) > VF, barer, real(0.0)))
+                k += 1
+            n += wp.static(L)
+        barest = real(0.0)
+        k = int(0)
+        while k < wp.static(L):
+            barest = wp.max(barest, bareness[k])
+            k += 1
+        least = covered - barest
+        outward = fold(outward_sums)
         dv = next_shift[i]
         if least < real(wp.static(SURFACE_EIGENVALUE)):
             normal = wp.normalize(outward)

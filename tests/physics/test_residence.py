@@ -57,7 +57,7 @@ def test_age_is_the_way_from_the_inlet_over_the_speed():
     sim.advance(1.5 * LENGTH / SPEED)
     x, age = ages(sim)
     inside = (x > 0.0) & (x < LENGTH)
-    late = scene.numerics.skin * scene.support_radius / SPEED
+    late = scene.numerics.list_skin * scene.support_radius / SPEED
     np.testing.assert_allclose(age[inside], x[inside] / SPEED, atol=late)
     assert not age[x < -0.01 * scene.spacing].any()
     assert age.max() > 0.9 * LENGTH / SPEED

@@ -29,6 +29,10 @@ from warpsph.scene.types import (
 )
 
 
+SKIN, SHIFTED_SKIN = 0.15, 0.2
+"""Margins of the neighbour lists, in support radii, without and with a particle order."""
+
+
 class DynamicWall(SceneModel):
     """Wall particles obey the continuity equation as the fluid does."""
 
@@ -126,8 +130,16 @@ class Numerics(SceneModel):
     structure: StructureNumerics = StructureNumerics()
     """The scheme of structures. Default: every default of its keys."""
 
-    skin: NonNegativeReal = 0.15
-    """Margin of the neighbour lists, in support radii [1]. Default: 0.15."""
+    skin: NonNegativeReal | None = None
+    """Margin of the neighbour lists, in support radii [1]. Default: 0.2 with a particle order, whose shifts take some
+    of it, otherwise 0.15."""
+
+    @property
+    def list_skin(self) -> float:
+        """Margin of the neighbour lists in support radii, chosen where the scene does not say."""
+        if self.skin is not None:
+            return self.skin
+        return SKIN if self.particle_order.type == "none" else SHIFTED_SKIN
 
     @property
     def support_over_h(self) -> float:

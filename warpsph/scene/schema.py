@@ -312,7 +312,7 @@ class Scene(SceneModel):
     @property
     def search_radius(self) -> float:
         """Radius of the neighbour lists: the support with its skin [m]."""
-        return (1.0 + self.numerics.skin) * self.support_radius
+        return (1.0 + self.numerics.list_skin) * self.support_radius
 
     def read_from(self, directory: Path, document: Document | None = None) -> Scene:
         """The same scene with relative file names counted from a directory, and the text it came from."""

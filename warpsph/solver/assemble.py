@@ -263,7 +263,7 @@ def _make_search(scene: Scene, assembly: Assembly, tables: Tables, sides: wp.arr
         [first == 0 for first, _ in ranges],
         [(FLUID, of_fluid), *((solid, [fluid]) for solid in solids)],
         radius=radius,
-        skin=scene.numerics.skin * radius,
+        skin=scene.numerics.list_skin * radius,
         spacing=scene.spacing,
         position=assembly.state.position,
         sides={} if tables.face is None else {tables.face: sides},
