@@ -20,7 +20,8 @@ neighbour, and the same code is the plain loop.
 
 The blocks are indexed in the kernel itself: a function that takes one copies it. The loops are `while` loops because
 Warp unrolls a `for` over a few iterations, and what is unrolled is not vectorised. What a particle has of its own is
-copied before the loop, `vector(shift[i])`: Warp reads `shift[i]` where it is used, which keeps loops from being vectorised.
+copied before the loop, `vector(shift[i])`: Warp would read `shift[i]` again wherever it is used, and a loop that does
+is not vectorised either.
 """
 
 from dataclasses import dataclass

@@ -67,8 +67,7 @@ def make_smallest_eigenvalue(options: FluidOptions) -> Any:
 def make_order_kernels(options: FluidOptions) -> OrderKernels:
     """Return the kernels of the particle order specialised for the options."""
     arithmetic = options.arithmetic
-    dim, real, vector, matrix = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.matrix
-    record = arithmetic.record
+    dim, real, vector, record = arithmetic.dimension, arithmetic.real, arithmetic.vector, arithmetic.record
     module = options.module_of("order")
     constants_type = make_constants_struct(arithmetic)
     _, unpack = make_packing(arithmetic)

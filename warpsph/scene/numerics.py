@@ -28,7 +28,6 @@ from warpsph.scene.types import (
     SceneModel,
 )
 
-
 SKIN, SHIFTED_SKIN = 0.15, 0.2
 """Margins of the neighbour lists, in support radii, without and with a particle order."""
 
