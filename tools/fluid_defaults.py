@@ -21,7 +21,7 @@ SCENES: Mapping[str, Sequence[str]] = {
     "hydrostatic_tank_2d": ["spacing=0.04"],
     "dam_break_2d": ["spacing=0.05"],
     "couette": ["spacing=4e-5"],
-    "taylor_green": ["spacing=0.04"],
+    "taylor_green": ["spacing=0.04", "numerics.h_over_dp=2"],
 }
 """Scenes with their spacing: a few seconds each."""
 

@@ -17,7 +17,7 @@ from warpsph.solver.errors import SimulationDiverged
 
 PAGE = Path(__file__).parents[1] / "docs/particle_order.md"
 SCENES: Mapping[str, Sequence[str]] = {
-    "taylor_green": ["spacing=0.02", "numerics.kernel_gradient=plain"],
+    "taylor_green": ["spacing=0.02", "numerics.kernel_gradient=plain", "numerics.h_over_dp=2"],
     "lid_driven_cavity_re400": ["spacing=0.04"],
     "cylinder_array": [],
 }
