@@ -142,8 +142,9 @@ def make_order_kernels(options: FluidOptions) -> OrderKernels:
                 grad = vV_b[k + wp.static(L * dim)] * F * x_ab
                 if wp.static(options.density_follows):
                     rates[k] = rates[k] + wp.dot(dv_a - dv_b, grad)
-                out_of_a = rho_a * wp.dot(dv_a, grad)
-                out_of_b = c.mass * F * wp.dot(dv_b, x_ab)
+                if wp.static(carries):
+                    out_of_a = rho_a * wp.dot(dv_a, grad)
+                    out_of_b = c.mass * F * wp.dot(dv_b, x_ab)
                 for d in range(wp.static(dim)):
                     concentrations[k + wp.static(L) * d] = concentrations[k + wp.static(L) * d] + grad[d]
                     if wp.static(carries):
