@@ -100,7 +100,8 @@ def make_list_kernel(
     rows = 3 ** (dim - 1)
     wrap, cell_of, row_base = make_cell_functions(arithmetic)
     module = module_of(arithmetic, periodic, lanes) + ("" if sided == "neither" else f"_sided_{sided}")
-    stretch, hits_type = make_lanes(arithmetic, lanes).stretch, make_lanes(arithmetic, lanes).hits
+    block = make_lanes(arithmetic, lanes)
+    stretch, hits_type, append = block.stretch, block.hits, block.append
 
     @wp.kernel(module=module, enable_backward=False)
     def list_neighbours(
@@ -124,15 +125,13 @@ def make_list_kernel(
         longer and repeats. A sided particle s has a vector n_s in `side`, and makes no pair with particles at x where
         n_s . (x - x_s) < 0.
 
-        Every candidate is written behind the neighbours found, and the next one over it unless it is one: the place
-        is spent, and no branch on what cannot be foreseen. So the last place of a row holds no neighbour, and the
-        arrays of the candidates end with `lanes` entries that are none.
+        Candidates are appended a block at a time: the last place of a row holds no neighbour, and the arrays of the
+        candidates end with `lanes` entries that are none.
         """
         i = offset + wp.tid()
         a = first_target + i
         x_a = listed_position[a]
         cell = cell_of(x_a, grid)
-        last = neighbours.shape[1] - 1
         found = int(0)
         if segment > 0:
             found = ends[i, segment - 1]
@@ -153,7 +152,6 @@ def make_list_kernel(
                     if wp.static(sided == "sources"):
                         sides = stretch(side, j)
                     hits = hits_type()
-                    hit_count = int(0)
                     k = int(0)
                     while k < wp.static(lanes):
                         x = vector()
@@ -170,16 +168,9 @@ def make_list_kernel(
                             reach = wp.where(away >= real(0.0), reach, real(0.0))
                         if wp.static(sided == "targets"):
                             reach = wp.where(wp.dot(side[i], x_ab) <= real(0.0), reach, real(0.0))
-                        hit = wp.where(wp.dot(x_ab, x_ab) < reach, 1, 0)
-                        hits[k] = hit
-                        hit_count += hit
+                        hits[k] = wp.where(wp.dot(x_ab, x_ab) < reach, 1, 0)
                         k += 1
-                    if hit_count > 0:
-                        k = int(0)
-                        while k < wp.static(lanes):
-                            neighbours[i, wp.min(found, last)] = first_source + j + k
-                            found += hits[k]
-                            k += 1
+                    found = append(neighbours, i, found, first_source + j, hits)
                     j += wp.static(lanes)
         ends[i, segment] = found
 

@@ -46,7 +46,9 @@ class Lanes:
     take(neighbours, row, first, end): `count` indices of a row from `first` on, the last one again beyond `end`;
     records(array, index, offset), vectors and matrices: the components of the entries index - offset, lane after lane,
     those of matrices row by row; numbers(array, index): entries that are numbers; stretch(array, first): the vectors
-    from `first` on, one after the other; fold(sums): the vector that the lanes' vectors add up to, fold_scalar and
+    from `first` on, one after the other; append(neighbours, row, found, first, hits): writes first + k behind the `found`
+    neighbours of a row for every lane k that is a hit, as far as there is room, and returns how many it has then;
+    fold(sums): the vector that the lanes' vectors add up to, fold_scalar and
     fold_tensor the same of numbers and of matrices.
     """
 
@@ -64,7 +66,8 @@ class Lanes:
     numbers: Any
     stretch: Any
     hits: Any
-    """Type of a whole number for each lane."""
+    """Type of a whole number for each lane: 1 if it is to be kept, else 0."""
+    append: Any
     fold: Any
     fold_scalar: Any
     fold_tensor: Any
@@ -119,6 +122,7 @@ def make_lanes(arithmetic: Arithmetic, count: int) -> Lanes:
         numbers=_make_pick(arithmetic, count),
         stretch=_make_stretch(arithmetic, count),
         hits=wp.types.vector(count, wp.int32),
+        append=_make_append(count),
         fold=fold,
         fold_scalar=fold_scalar,
         fold_tensor=fold_tensor,
@@ -224,6 +228,58 @@ def _make_stretch(arithmetic: Arithmetic, count: int) -> Any:
     def stretch(array: wp.array(dtype=vector), first: int) -> block: ...
 
     return stretch
+
+
+@cache
+def _make_append(count: int) -> Any:
+    """The function that appends the hits of a block to a row.
+
+    Written one by one, each behind the last one and over it unless that was a hit: no branch on what cannot be foreseen.
+    Where a processor moves the marked entries of a register together, they are written at once.
+    """
+    hits_type = wp.types.vector(count, wp.int32)
+
+    @wp.func
+    def append_one(neighbours: wp.array2d(dtype=wp.int32), row: int, found: int, first: int, hits: hits_type):
+        if found < neighbours.shape[1]:
+            neighbours[row, found] = first
+        return found + hits[0]
+
+    if count == 1:
+        return append_one
+    feature = "__AVX512F__" if count == 16 else "__AVX512VL__"
+    order = ", ".join(map(str, range(count)))
+    snippet = f"""
+    const int places = neighbours.shape[1];
+    int* to = &wp::index(neighbours, row, 0);
+#if defined({feature})
+    if (found + {count} <= places) {{
+        typedef int block_t __attribute__((ext_vector_type({count})));
+        typedef bool marks_t __attribute__((ext_vector_type({count})));
+        block_t marks;
+        __builtin_memcpy(&marks, &hits, sizeof(marks));
+        const marks_t chosen = __builtin_convertvector(marks, marks_t);
+        unsigned {"short" if count == 16 else "char"} mask;
+        __builtin_memcpy(&mask, &chosen, sizeof(mask));
+        const block_t block = block_t{{{order}}} + first;
+        const block_t kept = __builtin_ia32_compresssi{32 * count}_mask(block, block, mask);
+        __builtin_memcpy(to + found, &kept, sizeof(kept));
+        return found + __builtin_popcount(mask);
+    }}
+#endif
+    for (int k = 0; k < {count}; ++k) {{
+        to[found < places ? found : places - 1] = first + k;
+        found += hits.c[k];
+    }}
+    return found;
+    """
+
+    @wp.func_native(snippet)
+    def append(
+        neighbours: wp.array2d(dtype=wp.int32), row: int, found: int, first: int, hits: hits_type
+    ) -> int: ...
+
+    return append
 
 
 def _transposing_loads(c_type: str, width: int, count: int) -> str:
