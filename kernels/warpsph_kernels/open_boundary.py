@@ -304,16 +304,22 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
     @wp.kernel(module=module, enable_backward=False)
     def hold_motion(
         offset: int,
+        patches: wp.array(dtype=patch_type),
         tagged: wp.array(dtype=wp.int32),
+        tag: wp.array(dtype=wp.int32),
         shifts: int,
+        velocity_volume: wp.array(dtype=record),
         acceleration: wp.array(dtype=vector),
         next_shift: wp.array(dtype=vector),
     ):
-        """One particle of a buffer: no force changes its velocity, and nothing shifts it."""
+        """One particle of a buffer: no force changes its velocity. Where particles are shifted, it moves along the normal
+        alone: in a buffer nothing spreads what the flow along a patch brings together, as where it turns back."""
         i = tagged[offset + wp.tid()]
         acceleration[i] = vector()
         if shifts > 0:
-            next_shift[i] = vector()
+            v = unpack(velocity_volume[i])
+            normal = patches[tag[i]].normal
+            next_shift[i] = wp.dot(v, normal) * normal - v
 
     @wp.kernel(module=module, enable_backward=False)
     def hold_density(

@@ -47,7 +47,7 @@ def select_code(
         viscosity=_pair_viscosity(scene),
         stress=_stress(scene),
         particle_order=numerics.particle_order.type,
-        density_follows=getattr(numerics.particle_order, "density_follows", False),
+        density_follows=_density_follows(scene),
         density=numerics.density,
         kernel_gradient=numerics.kernel_gradient,
         background_pressure=numerics.background_pressure > 0.0,
@@ -57,6 +57,15 @@ def select_code(
         wall_friction=has_walls and no_slip and numerics.viscosity.type != "none",
         lanes=lanes_on(device, arithmetic.dimension),
     )
+
+
+def _density_follows(scene: Scene) -> bool:
+    """Tell whether the density follows what a transport velocity brings together: unless the scene says otherwise, where
+    particles may grow fewer."""
+    order = scene.numerics.particle_order
+    if order.type != "transport_velocity":
+        return False
+    return bool(scene.open_boundaries) if order.density_follows is None else order.density_follows
 
 
 def _pair_viscosity(scene: Scene) -> str:

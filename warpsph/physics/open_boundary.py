@@ -261,7 +261,15 @@ class OpenBoundaryModel:
         next_shift = order.next_shift if order else a.vectors(np.zeros((1, a.options.arithmetic.dimension)))
         state = a.state
         self._hold_motion = bind(
-            "impose", kernels.hold_motion, self._tagged, int(bool(order)), state.acceleration, next_shift
+            "impose",
+            kernels.hold_motion,
+            self.device_patches,
+            self._tagged,
+            self.tag,
+            int(bool(order)),
+            state.velocity_volume,
+            state.acceleration,
+            next_shift,
         )
         self._hold_density = bind(
             "impose",

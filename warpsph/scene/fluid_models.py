@@ -238,9 +238,10 @@ class TransportVelocity(SceneModel):
     type: Literal["transport_velocity"] = "transport_velocity"
     background: Annotated[Real, Field(gt=0.0, le=10.0)] = 1.0
     """Background pressure in units of density * sound_speed^2 [1]. Default: 1."""
-    density_follows: Flag = False
+    density_follows: Flag | None = None
     """Whether the density follows, within about a hundred steps, where particles are moved together or apart; without
-    it, the particles between open boundaries grow fewer at the same density. Default: false."""
+    it, the particles between open boundaries grow fewer at the same density. Default: true in a scene with open
+    boundaries, else false."""
 
     @property
     def strength(self) -> float:

@@ -166,8 +166,8 @@ def vortex_at_an_outlet(machine: Machine) -> list[Figure]:
     """Behind a step that takes half of a channel the flow of Re = 100 separates, and the outlet, a step's height behind
     it, cuts the eddy: fluid leaves in one half of the patch and enters in the other.
 
-    In the gap the mean is 2 m/s, and no flow between plates with that mean is faster than its parabola, 3 m/s, to a
-    tenth for ten particles across. What enters leaves.
+    In the gap the mean is 2 m/s. Behind the step, where the flow widens, nothing is faster than the parabola between
+    plates with that mean, 3 m/s, to a tenth for ten particles across. What enters leaves.
     """
     mean = {"velocity": {"type": "parabolic", "mean": 1.0}, "ramp": 0.5}
     step = box((0.5, 0.0), (1.5, 0.5 * HEIGHT))
@@ -177,14 +177,16 @@ def vortex_at_an_outlet(machine: Machine) -> list[Figure]:
     first, before, fastest = passed(simulation), inside(simulation), 0.0
     for time in np.linspace(4.0, 10.0, 13)[1:]:
         simulation.advance(float(time))
-        fastest = max(fastest, float(np.linalg.norm(rows(simulation, "water", "velocity"), axis=1).max()))
+        behind = rows(simulation, "water")[:, 0] > 1.5
+        velocity = rows(simulation, "water", "velocity")[behind]
+        fastest = max(fastest, float(np.linalg.norm(velocity, axis=1).max()))
     last = passed(simulation)
     brought = DENSITY * HEIGHT * 6.0
     net = sum(last[name].mass - first[name].mass for name in last)
     layer = HEIGHT / scene.spacing
     returned = last["outlet"].entered - first["outlet"].entered
     return [
-        Figure("fastest particle over the peak of the parabola", fastest / 3.0, 1.1),
+        Figure("fastest particle behind the step over the peak of the parabola", fastest / 3.0, 1.1),
         Figure("flux that does not leave", abs(net) / brought, 0.01),
         Figure("particles gained, in layers", abs(inside(simulation) - before) / layer, 1.0),
         Figure("particles that came back, in layers", returned / layer, 1.0, at_least=True),
