@@ -46,10 +46,10 @@ class Lanes:
     take(neighbours, row, first, end): `count` indices of a row from `first` on, the last one again beyond `end`;
     records(array, index, offset), vectors and matrices: the components of the entries index - offset, lane after lane,
     those of matrices row by row; numbers(array, index): entries that are numbers; stretch(array, first): the vectors
-    from `first` on, one after the other; append(neighbours, row, found, first, hits): writes first + k behind the `found`
-    neighbours of a row for every lane k that is a hit, as far as there is room, and returns how many it has then;
-    fold(sums): the vector that the lanes' vectors add up to, fold_scalar and
-    fold_tensor the same of numbers and of matrices.
+    from `first` on, one after the other; append(neighbours, row, found, first, hits): writes first + k behind the
+    `found` neighbours of a row for every lane k that is a hit, as far as there is room, and returns how many it has
+    then; fold(sums): the vector that the lanes' vectors add up to, fold_scalar and fold_tensor the same of numbers and
+    of matrices.
     """
 
     count: int
@@ -234,8 +234,8 @@ def _make_stretch(arithmetic: Arithmetic, count: int) -> Any:
 def _make_append(count: int) -> Any:
     """The function that appends the hits of a block to a row.
 
-    Written one by one, each behind the last one and over it unless that was a hit: no branch on what cannot be foreseen.
-    Where a processor moves the marked entries of a register together, they are written at once.
+    Written one by one, each behind the last one and over it unless that was a hit: no branch on what cannot be
+    foreseen. Where a processor moves the marked entries of a register together, they are written at once.
     """
     hits_type = wp.types.vector(count, wp.int32)
 

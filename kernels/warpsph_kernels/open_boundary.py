@@ -312,8 +312,9 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         acceleration: wp.array(dtype=vector),
         next_shift: wp.array(dtype=vector),
     ):
-        """One particle of a buffer: no force changes its velocity. Where particles are shifted, it moves along the normal
-        alone: in a buffer nothing spreads what the flow along a patch brings together, as where it turns back."""
+        """One particle of a buffer: no force changes its velocity. Where particles are shifted, it moves along the
+        normal alone: in a buffer nothing spreads what the flow along a patch brings together, as where it turns back.
+        """
         i = tagged[offset + wp.tid()]
         acceleration[i] = vector()
         if shifts > 0:

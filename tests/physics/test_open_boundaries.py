@@ -268,8 +268,7 @@ def test_flow_comes_back_through_an_outlet_for_a_quarter_of_the_cycle(outlet: st
 def test_what_enters_leaves_behind_a_step() -> None:
     """Flow of Re = 100 past a step, whose eddy strains what the transport velocity keeps even: after 3 s at a mean of
     1 m/s the number of particles is what it was, to 1 %, and the flux leaves, because the density follows the shifts.
-    Where it does not, 4 % more leave than
-    enter."""
+    Where it does not, 4 % more leave than enter."""
     net, number = {}, {}
     for follows in (None, False):
         scene = channel(

@@ -60,8 +60,8 @@ def select_code(
 
 
 def _density_follows(scene: Scene) -> bool:
-    """Tell whether the density follows what a transport velocity brings together: unless the scene says otherwise, where
-    particles may grow fewer."""
+    """Tell whether the density follows what a transport velocity brings together: unless the scene says otherwise,
+    where particles may grow fewer."""
     order = scene.numerics.particle_order
     if order.type != "transport_velocity":
         return False

@@ -109,7 +109,7 @@ class OpenBoundaryModel:
         self._impose.run(self._tagged_count)
 
     def hold_motion(self) -> None:
-        """Take away the acceleration of particles in buffers."""
+        """Let particles in buffers move as is imposed on them, without forces."""
         self._hold_motion.run(self._tagged_count)
 
     def hold_density(self) -> None:
