@@ -313,14 +313,18 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         next_shift: wp.array(dtype=vector),
     ):
         """One particle of a buffer: no force changes its velocity. Where particles are shifted, it moves along the
-        normal alone: in a buffer nothing spreads what the flow along a patch brings together, as where it turns back.
+        patch no faster than it leaves: nothing spreads what the flow along a patch brings together where it turns back,
+        while what leaves faster is gone before.
         """
         i = tagged[offset + wp.tid()]
         acceleration[i] = vector()
         if shifts > 0:
             v = unpack(velocity_volume[i])
             normal = patches[tag[i]].normal
-            next_shift[i] = wp.dot(v, normal) * normal - v
+            along = v - wp.dot(v, normal) * normal
+            leaving = wp.max(-wp.dot(v, normal), real(0.0))
+            kept = wp.min(leaving / wp.max(wp.length(along), real(1.0e-20)), real(1.0))
+            next_shift[i] = (kept - real(1.0)) * along
 
     @wp.kernel(module=module, enable_backward=False)
     def hold_density(
