@@ -267,7 +267,7 @@ def test_flow_comes_back_through_an_outlet_for_a_quarter_of_the_cycle(outlet: st
 @pytest.mark.verification
 def test_what_enters_leaves_behind_a_step() -> None:
     """Flow of Re = 100 past a step, whose eddy strains what the transport velocity keeps even: after 3 s at a mean of
-    1 m/s the number of particles is what it was, to 1 %, and the flux leaves, because the density follows the shifts.
+    1 m/s the number of particles is what it was, to 2 %, and the flux leaves, because the density follows the shifts.
     Where it does not, 4 % more leave than enter."""
     net, number = {}, {}
     for follows in (None, False):
@@ -295,7 +295,7 @@ def test_what_enters_leaves_behind_a_step() -> None:
         net[follows] = sum(last[name].mass - first[name].mass for name in last) / 2000.0
         number[follows] = sim.sets[0][2] / before - 1.0
     assert abs(net[None]) < 0.01
-    assert abs(number[None]) < 0.01
+    assert abs(number[None]) < 0.02
     assert net[False] < -0.04
     assert number[False] < -0.03
 
