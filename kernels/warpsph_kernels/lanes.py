@@ -234,14 +234,15 @@ def _make_stretch(arithmetic: Arithmetic, count: int) -> Any:
 def _make_append(count: int) -> Any:
     """The function that appends the hits of a block to a row.
 
-    Written one by one, each behind the last one and over it unless that was a hit: no branch on what cannot be
-    foreseen. Where a processor moves the marked entries of a register together, they are written at once.
+    Where a processor moves the marked entries of a register together, they are written at once. Else those of a block
+    with any hit are written one by one, each behind the last one and over it unless that was a hit: no branch on what
+    cannot be foreseen.
     """
     hits_type = wp.types.vector(count, wp.int32)
 
     @wp.func
     def append_one(neighbours: wp.array2d(dtype=wp.int32), row: int, found: int, first: int, hits: hits_type):
-        if found < neighbours.shape[1]:
+        if hits[0] > 0 and found < neighbours.shape[1]:
             neighbours[row, found] = first
         return found + hits[0]
 
@@ -267,6 +268,9 @@ def _make_append(count: int) -> Any:
         return found + __builtin_popcount(mask);
     }}
 #endif
+    int any = 0;
+    for (int k = 0; k < {count}; ++k) any |= hits.c[k];
+    if (!any) return found;
     for (int k = 0; k < {count}; ++k) {{
         to[found < places ? found : places - 1] = first + k;
         found += hits.c[k];

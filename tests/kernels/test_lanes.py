@@ -47,6 +47,33 @@ def test_blocks_hold_the_components_of_the_listed_entries(dimension: int, precis
     np.testing.assert_array_equal(out.numpy().reshape(width, count), entries[np.array(chosen) - 5].T)
 
 
+@pytest.mark.parametrize("count", [1, 8, 16])
+def test_hits_are_appended_as_far_as_there_is_room(count: int) -> None:
+    # Behind three neighbours, in rows with room for a whole block, for a part of it, and for nothing.
+    lanes = make_lanes(Arithmetic(3, "single"), count)
+    hits = np.random.default_rng(1).integers(0, 2, count)
+    kept = 100 + np.flatnonzero(hits)
+
+    @wp.kernel(module=f"test_append_{count}", enable_backward=False)
+    def append(
+        marks: wp.array(dtype=lanes.hits),
+        neighbours: wp.array2d(dtype=wp.int32),
+        found: wp.array(dtype=wp.int32),
+    ):
+        found[0] = lanes.append(neighbours, 0, 3, 100, marks[0])
+
+    for places in (count + 3, count // 2 + 4, 3):
+        neighbours = wp.array(-np.ones((1, places)), dtype=wp.int32, device="cpu")
+        found = wp.zeros(1, dtype=wp.int32, device="cpu")
+        marks = wp.array(hits[None], dtype=lanes.hits, device="cpu")
+        wp.launch(append, 1, inputs=[marks, neighbours, found], device="cpu")
+        assert found.numpy()[0] == 3 + len(kept)
+        # The last place is spent where the row is full.
+        room = min(len(kept), places - 4)
+        if room > 0:
+            np.testing.assert_array_equal(neighbours.numpy()[0, 3 : 3 + room], kept[:room])
+
+
 @pytest.mark.parametrize(
     "overrides",
     [
