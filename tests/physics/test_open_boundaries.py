@@ -13,6 +13,7 @@ from warpsph.particles.state import host_view
 from warpsph.probes import make_probe
 from warpsph.scene import Scene
 from warpsph.solver.simulation import Simulation
+from warpsph.validation.hard.open_boundaries import channel as obstructed_channel
 
 NUMERICS = {"sound_speed": 20.0, "wall": {"type": "extrapolated", "suction": True}}
 
@@ -271,21 +272,13 @@ def test_what_enters_leaves_behind_a_step() -> None:
     more leave than enter."""
     net = {}
     for follows in (None, False):
-        scene = channel(
-            spacing=0.05,
-            inlet={"type": "velocity", "velocity": {"type": "parabolic", "mean": 1.0}, "ramp": 0.5},
-            velocity=(0.0, 0.0),
+        inlet = {"velocity": {"type": "parabolic", "mean": 1.0}, "ramp": 0.5}
+        step = {"type": "box", "min": (0.3, 0.0), "max": (0.7, 0.3)}
+        scene = obstructed_channel(
+            2.0, inlet, {}, viscosity=0.01, spacing=0.05, obstacle=step, start=(0.0, 0.0)
         )
         data = scene.model_dump()
-        data["numerics"] |= {
-            "viscosity": {"type": "laminar"},
-            "particle_order": {"type": "transport_velocity", "density_follows": follows},
-        }
-        water, step = data["fluids"]["water"], {"type": "box", "min": (0.3, 0.0), "max": (0.7, 0.3)}
-        water["shape"] = {"type": "difference", "base": water["shape"], "subtract": (step,)}
-        water["kinematic_viscosity"] = 0.01
-        data["boundaries"]["plates"]["slip"] = "no_slip"
-        data["boundaries"]["step"] = {"shape": step, "side": "solid", "slip": "no_slip"}
+        data["numerics"]["particle_order"]["density_follows"] = follows
         sim = Simulation(Scene.model_validate(data), device="cpu")
         sim.advance(1.0)
         first = sim.system.inflows()
