@@ -19,6 +19,7 @@ from warpsph_kernels.patch import (
     make_across,
     make_below_level,
     make_nearest_station,
+    make_on_patch,
     make_patch_struct,
 )
 
@@ -47,20 +48,12 @@ def make_exchange_kernels(options: FluidOptions) -> ExchangeKernels:
     """Return the kernels of the exchange specialised for the options."""
     arithmetic = options.arithmetic
     real, vector, point = arithmetic.real, arithmetic.vector, arithmetic.point
-    pair = wp.types.vector(2, real)
     patch_type, constants_type = make_patch_struct(options), make_constants_struct(arithmetic)
     separation = make_separation(arithmetic, options.periodic)
-    across, below_level = make_across(options), make_below_level(options)
+    across, below_level, on_patch = make_across(options), make_below_level(options), make_on_patch(options)
     nearest_station = make_nearest_station(options)
     _, unpack = make_packing(arithmetic)
     module = options.module_of("exchange")
-
-    @wp.func
-    def on_patch(patch: patch_type, s: pair, margin: real):
-        inside = wp.abs(s[0]) <= patch.half[0] + margin and wp.abs(s[1]) <= patch.half[1] + margin
-        if patch.is_disc > 0:
-            inside = wp.length(s) <= patch.half[0] + margin
-        return inside
 
     @wp.kernel(module=module, enable_backward=False)
     def classify(

@@ -35,7 +35,6 @@ class OpenBoundaryKernels(NamedTuple):
     find_inside: Any
     average: Any
     decide: Any
-    tally_flux: Any
     impose: Any
     hold_motion: Any
     hold_density: Any
@@ -236,28 +235,6 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         imposed[i] = pack(v, p)
 
     @wp.kernel(module=module, enable_backward=False)
-    def tally_flux(
-        offset: int,
-        c: constants_type,
-        clock: wp.array(dtype=wp.float64),
-        patches: wp.array(dtype=patch_type),
-        weight: wp.array(dtype=real),
-        imposed: wp.array(dtype=record),
-        flux: wp.array(dtype=wp.float64),
-        mass: wp.array(dtype=wp.float64),
-    ):
-        """One patch: mass that enters a second [kg/s], the sum of rho u . n over its area, and its integral [kg]."""
-        k = offset + wp.tid()
-        patch = patches[k]
-        total = wp.float64(0.0)
-        for j in range(patch.counts[0] * patch.counts[1]):
-            i = patch.first_station + j
-            density = c.rest_density + deviation_of(imposed[i][wp.static(dim)], c)
-            total += wp.float64(density * weight[i] * wp.dot(unpack(imposed[i]), patch.normal))
-        flux[k] = total
-        mass[k] = mass[k] + clock[0] * flux[k]
-
-    @wp.kernel(module=module, enable_backward=False)
     def impose(
         offset: int,
         c: constants_type,
@@ -362,7 +339,6 @@ def make_open_boundary_kernels(options: FluidOptions) -> OpenBoundaryKernels:
         find_inside,
         average,
         decide,
-        tally_flux,
         impose,
         hold_motion,
         hold_density,

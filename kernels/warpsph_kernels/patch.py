@@ -80,6 +80,23 @@ def make_below_level(options: FluidOptions) -> Any:
 
 
 @cache
+def make_on_patch(options: FluidOptions) -> Any:
+    """Return the device function `on_patch(patch, s, margin) -> bool`: whether coordinates across lie on the patch or
+    within `margin` [m] of it."""
+    real = options.arithmetic.real
+    pair = wp.types.vector(2, real)
+    patch_type = make_patch_struct(options)
+
+    def on_patch(patch: patch_type, s: pair, margin: real):
+        inside = wp.abs(s[0]) <= patch.half[0] + margin and wp.abs(s[1]) <= patch.half[1] + margin
+        if patch.is_disc > 0:
+            inside = wp.length(s) <= patch.half[0] + margin
+        return inside
+
+    return wp.func(on_patch)
+
+
+@cache
 def make_nearest_station(options: FluidOptions) -> Any:
     """Return the device function `nearest_station(patch, s) -> int`: the station nearest to coordinates across."""
     dim, real = options.arithmetic.dimension, options.arithmetic.real

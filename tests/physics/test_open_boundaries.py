@@ -233,7 +233,8 @@ def test_growth_changes_no_particle() -> None:
 @pytest.mark.parametrize("outlet", ["pressure", "zero_gradient"])
 def test_flow_comes_back_through_an_outlet_for_a_quarter_of_the_cycle(outlet: str) -> None:
     """u = 0.5 + 0.7 cos(pi t) is negative for 0.25 of its period of 2 s. The mass in the domain returns after each
-    period, and so does the number of particles, to a layer."""
+    period, and so does the number of particles, to a layer. Buffers bring in particles of the spacing of rest: under a
+    pressure that makes the fluid 2 % denser, what passes is still the mass of the fluid at rest."""
     pressure = 8000.0  # above what the deceleration of 2 m of fluid at 2.2 m/s2 takes away
     scene = channel(
         inlet={
@@ -261,14 +262,13 @@ def test_flow_comes_back_through_an_outlet_for_a_quarter_of_the_cycle(outlet: st
         assert np.abs(state["velocity"][inside] - [0.5 + 0.7 * np.cos(np.pi * time), 0.0]).max() < 0.2
     passed = sim.system.inflows()["outlet"]
     assert passed.entered > 10
-    density = 1000.0 + pressure / NUMERICS["sound_speed"] ** 2  # type: ignore[operator]
-    assert passed.mass == pytest.approx(-density * 0.5 * 6.0, rel=0.01)
+    assert passed.mass == pytest.approx(-1000.0 * 0.5 * 6.0, rel=0.01)
 
 
 @pytest.mark.verification
 def test_what_enters_leaves_behind_a_step() -> None:
     """Flow of Re = 100 past a step, whose eddy strains what the transport velocity keeps even: in 2 s at a mean of
-    1 m/s the flux that enters leaves, to 1 %, because the density follows the shifts. Where it does not, more than 4 %
+    1 m/s the flux that enters leaves, to 1 %, because the density follows the shifts. Where it does not, more than 3 %
     more leave than enter."""
     net = {}
     for follows in (None, False):
@@ -286,7 +286,7 @@ def test_what_enters_leaves_behind_a_step() -> None:
         last = sim.system.inflows()
         net[follows] = sum(last[name].mass - first[name].mass for name in last) / 2000.0
     assert abs(net[None]) < 0.01
-    assert net[False] < -0.04
+    assert net[False] < -0.03
 
 
 def reflection(outlet: dict[str, Any]) -> float:

@@ -56,6 +56,24 @@ def test_fluid_between_the_patches_gains_what_enters():
     assert probe.evaluate(after) == pytest.approx((70.0, 70.0, 7 * MASS, 0.0, 0.0))
 
 
+def test_between_exchanges_a_layer_counts_in_part():
+    """A column of particles moves by half a spacing into the domain, and none changes its tag: by the flux the domain
+    gains half a particle, and in whole ones nothing."""
+    probe = probe_of(tank())
+    x = 2.0 + SPACING * (np.arange(16) - 7.5)
+
+    def column(shift: float):
+        position = np.column_stack([x + shift, np.full(16, 1.05)])
+        return frame_of(fluid(position, patch=np.where(x < 2.0, 0, -1)))
+
+    probe.start(column(0.0))
+    moved = replace(column(0.5 * SPACING), inflows={"inlet": passed(0.5 * MASS, 0.0)})
+    _, _, gained, flux_error, counted_error = probe.evaluate(moved)
+    assert gained == pytest.approx(0.5 * MASS, rel=1e-6)
+    assert flux_error == pytest.approx(0.0, abs=1e-6 * MASS)
+    assert counted_error == 0.0
+
+
 def test_what_has_left_the_region_is_missing():
     region = {"min": [0.0, 0.0], "max": [1.0, 0.5]}
     probe = probe_of(tank(region=region))

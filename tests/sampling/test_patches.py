@@ -26,33 +26,12 @@ def law(
     return patch_laws(changed)[0]
 
 
-def flow_rate(scene: Scene, values: np.ndarray) -> float:
-    patch = patches_of(scene)[0]
-    return float(patch.weights @ (values[:, :-1] @ patch.axes[:, 0]))
-
-
 @pytest.mark.parametrize("is_round", [False, True])
 def test_the_stations_of_a_patch_share_its_area(is_round: bool) -> None:
     patch = patches_of(pipe(is_round=is_round))[0]
     area = np.pi * 0.4**2 if is_round else 0.8**2
     assert patch.weights.sum() == pytest.approx(area)
     assert np.all(patch.weights >= 0.0)
-
-
-def test_a_parabola_carries_the_flow_rate_that_is_asked_for() -> None:
-    """The middle rule over n stations is off by 1 / (2 n^2) of it across a segment."""
-    scene = channel()
-    values = law({"type": "parabolic", "flow_rate": 0.6})(0.0)
-    assert flow_rate(scene, values) == pytest.approx(0.6, rel=1.0 / 200.0 + 1e-9)
-    assert values[:, 0].max() == pytest.approx(0.9, rel=0.02)
-
-
-@pytest.mark.parametrize("is_round", [False, True])
-def test_a_parabola_in_space_has_its_mean(is_round: bool) -> None:
-    scene = pipe(is_round=is_round)
-    values = law({"type": "parabolic", "mean": 2.0}, scene)(0.0)
-    area = np.pi * 0.4**2 if is_round else 0.8**2
-    assert flow_rate(scene, values) == pytest.approx(2.0 * area, rel=0.03)
 
 
 def test_velocities_turn_with_the_patch() -> None:
@@ -103,3 +82,21 @@ def test_a_buffer_continues_the_lattice_of_its_fluid(angle: float) -> None:
     np.fill_diagonal(lattice, np.inf)
     assert lattice.min() == pytest.approx(DP)
     assert np.sum(lattice < 1.01 * DP, axis=1).min() >= 2
+
+
+@pytest.mark.parametrize("depth", [0.1, 0.25])
+def test_shares_inside_of_a_patch_rise_by_the_hat_of_the_flux(depth: float) -> None:
+    """Nought and one at its ends, one half on the patch, and a slope of (1 - |d| / D) / D between; one beside it, and
+    nought in the buffer however far behind."""
+    patch = patches_of(channel())[0]
+    d = np.linspace(-1.2 * depth, 1.2 * depth, 2401)
+    points = np.column_stack([d, np.full_like(d, 0.5)])
+    share = patch.share_inside(points, np.zeros(len(d), dtype=bool), depth, 0.0)
+    hat = np.clip(1.0 - np.abs(d) / depth, 0.0, None) / depth
+    assert np.gradient(share, d) == pytest.approx(hat, abs=2e-3 / depth)
+    assert share[[0, 1200, -1]] == pytest.approx([0.0, 0.5, 1.0])
+    beside, far = np.array([[0.0, 1.3]]), np.array([[-patch.length - 0.01, 0.5]])
+    outside, inside = np.array([False]), np.array([True])
+    assert patch.share_inside(beside, outside, depth, 0.05) == 1.0
+    assert patch.share_inside(far, outside, depth, 0.05) == 1.0
+    assert patch.share_inside(far, inside, depth, 0.05) == 0.0

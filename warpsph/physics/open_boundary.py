@@ -22,6 +22,7 @@ from warpsph.particles.state import HostTable
 from warpsph.physics.assembly import Assembly
 from warpsph.physics.fluid import FluidModel
 from warpsph.physics.material import smoothing_length
+from warpsph.physics.patch_flux import PatchFluxModel
 from warpsph.physics.residence import ResidenceModel
 from warpsph.sampling.patch_laws import PatchLaw, patch_laws
 from warpsph.sampling.patches import Patch, patches_of
@@ -42,8 +43,7 @@ class OpenBoundaryModel:
 
     tag: (places,) index of the patch in whose buffer a fluid particle is, else -1; imposed: (stations,) velocity
     [m/s] and pressure [Pa] on the patches; undisturbed: (stations,) running mean of the velocity at non-reflecting
-    patches [m/s]; flux, mass: (patches,) mass that enters a second [kg/s] and its integral [kg]; in 2D per metre of
-    depth.
+    patches [m/s]; passing: the mass that passes them.
     """
 
     def __init__(self, scene: Scene, assembly: Assembly, search: NeighbourSearch, fluid: FluidModel) -> None:
@@ -60,6 +60,9 @@ class OpenBoundaryModel:
         self._residence = ResidenceModel(assembly, self.tag) if asked else None
         self.device_patches = self._make_patches(list(scene.open_boundaries.values()))
         self._place_stations(smoothing_length(scene))
+        self.passing = PatchFluxModel(
+            assembly, search, self.patches, self.device_patches, self._patch_of, scene.spacing
+        )
         self._bind()
         if fluid.order:
             fluid.order.complete_coverage = self._cover
@@ -76,13 +79,13 @@ class OpenBoundaryModel:
         return {
             "patch_imposed": self.imposed,
             "patch_undisturbed": self.undisturbed,
-            "patch_flux": self.flux,
-            "patch_mass": self.mass,
+            "patch_flux": self.passing.flux,
+            "patch_mass": self.passing.mass,
         }
 
     @property
     def passes(self) -> list[str]:
-        return ["look inside", "impose"]
+        return ["look inside", "impose", "flux"]
 
     def tag_start(self, position: np.ndarray, margin: float) -> None:
         """Tag the particles (n, dimension) [m] of the start that lie in buffers."""
@@ -105,8 +108,8 @@ class OpenBoundaryModel:
         self._look.run(self.stations)
         self._average.run(len(self.patches))
         self._decide.run(self.stations)
-        self._tally.run(len(self.patches))
         self._impose.run(self._tagged_count)
+        self.passing.tally()
 
     def hold_motion(self) -> None:
         """Let particles in buffers move as is imposed on them, without forces."""
@@ -151,8 +154,6 @@ class OpenBoundaryModel:
         self._filling = wp.zeros(self.stations, dtype=arithmetic.real, device=device)
         self.undisturbed = wp.zeros(self.stations, dtype=arithmetic.vector, device=device)
         self._mean_pressure = wp.zeros(len(self.patches), dtype=arithmetic.real, device=device)
-        self.flux = wp.zeros(len(self.patches), dtype=wp.float64, device=device)
-        self.mass = wp.zeros(len(self.patches), dtype=wp.float64, device=device)
 
     def _make_patches(self, boundaries: Sequence[OpenBoundary]) -> wp.array:
         a = self._assembly
@@ -224,17 +225,6 @@ class OpenBoundaryModel:
             self._mean_pressure,
             self.undisturbed,
             self.imposed,
-        )
-        self._tally = bind(
-            "impose",
-            kernels.tally_flux,
-            a.constants,
-            a.clock,
-            patches,
-            self._weight,
-            self.imposed,
-            self.flux,
-            self.mass,
         )
         self._impose = bind(
             "impose",

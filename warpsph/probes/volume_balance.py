@@ -8,6 +8,8 @@ from warpsph.frame import Frame
 from warpsph.geometry.polygons import polygon_area
 from warpsph.probes.material_point import MaterialPoint
 from warpsph.probes.probe import Probe
+from warpsph.sampling.patches import BESIDE, FLUX_DEPTH, patches_of
+from warpsph.sampling.walls import period_of
 from warpsph.scene.probes import VolumeBalanceProbe as VolumeBalanceSpec
 from warpsph.scene.probes import WallLine
 from warpsph.scene.schema import Scene
@@ -26,10 +28,11 @@ class VolumeBalanceProbe(Probe):
             needs["structure"] = MaterialPoint.needs
         super().__init__(spec.columns(name, scene.dimension), needs)
         self._region = spec.region
+        self._patches, self._spacing, self._period = patches_of(scene), scene.spacing, period_of(scene)
         self._walls = [
             SweptLine(line, scene, f"probes.{name}.walls.{index}") for index, line in enumerate(spec.walls)
         ]
-        self._start = (0.0, 0.0)
+        self._start = np.zeros(3)
 
     def start(self, frame: Frame) -> None:
         """Note the fluid of the start, and find the walls. Raises SceneError where they lie in no structure."""
@@ -38,32 +41,44 @@ class VolumeBalanceProbe(Probe):
             wall.find(frame)
 
     def evaluate(self, frame: Frame) -> tuple[float, ...]:
-        """Entered by the flux and by count, and gained since the start [kg]; what was gained less what entered by
-        either; with walls also volume gained and enclosed since the start, and the one less the other [m3].
+        """Entered by the flux and by count, and gained since the start [kg]; what was gained less what entered by the
+        flux, and in whole particles less what entered by count; with walls also volume gained and enclosed since the
+        start, and the one less the other [m3].
 
         In the plane per metre of depth.
         """
         flux = sum(one.mass for one in frame.inflows.values())
         counted = sum(one.counted_mass for one in frame.inflows.values())
-        mass, volume = (now - start for now, start in zip(self._inside(frame), self._start, strict=True))
-        figures = (flux, counted, mass, mass - flux, mass - counted)
+        whole, mass, volume = (self._inside(frame) - self._start).tolist()
+        figures = (flux, counted, mass, mass - flux, whole - counted)
         if not self._walls:
             return figures
         enclosed = sum(wall.area(frame) for wall in self._walls)
         return (*figures, volume, enclosed, volume - enclosed)
 
-    def _inside(self, frame: Frame) -> tuple[float, float]:
-        """Mass [kg] and volume [m3] of the fluid that lies in no buffer, and in the region where there is one."""
-        total = np.zeros(2)
+    def _inside(self, frame: Frame) -> np.ndarray:
+        """Of the fluid in the region, where there is one: mass of the particles that lie in no buffer [kg]; mass [kg]
+        and volume [m3] where particles beside a patch count in part."""
+        total = np.zeros(3)
         for fluid in frame.of_kind("fluid"):
             position = fluid.fields["position"]
-            counts = fluid.fields["patch"] < 0
+            mass = fluid.fields["mass"].astype(np.float64)
             if self._region is not None:
                 within = (position >= self._region.min) & (position <= self._region.max)
-                counts = counts & np.all(within, axis=1)
-            mass = fluid.fields["mass"][counts].astype(np.float64)
-            total += mass.sum(), (mass / fluid.fields["density"][counts]).sum()
-        return float(total[0]), float(total[1])
+                mass = mass * np.all(within, axis=1)
+            tag = fluid.fields["patch"]
+            shared = mass * self._shares(position, tag)
+            total += mass[tag < 0].sum(), shared.sum(), (shared / fluid.fields["density"]).sum()
+        return total
+
+    def _shares(self, position: np.ndarray, tag: np.ndarray) -> np.ndarray:
+        """Part (n,) of each particle that lies between the patches, of which `tag` (n,) names the one behind it."""
+        depth, margin = FLUX_DEPTH * self._spacing, BESIDE * self._spacing
+        shares = np.ones(len(position))
+        for k, patch in enumerate(self._patches):
+            share = patch.share_inside(position, tag == k, depth, margin, self._period)
+            shares = np.minimum(shares, share)
+        return shares
 
 
 class SweptLine:

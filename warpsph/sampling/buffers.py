@@ -8,20 +8,18 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial import cKDTree
 
+from warpsph.sampling.buffer_points import buffer_of, columns_of, fluid_of
 from warpsph.sampling.lattice import Lattice
 from warpsph.sampling.packing import CLOSEST, away_from
-from warpsph.sampling.patches import Patch, buffer_points, patches_of
+from warpsph.sampling.patches import Patch, patches_of
 from warpsph.sampling.walls import period_of
 from warpsph.scene.errors import Problem
 from warpsph.scene.schema import Scene
 
+_NOTABLE_MISFIT = 0.01
+"""Part of a patch's area by which that of its columns may be off without a word."""
 _NEAR = 0.8
 """Distance in spacings within which a wall particle stands at a place."""
-
-
-def fluid_of(scene: Scene, patch: Patch) -> str:
-    """Name of the fluid in a patch's buffer."""
-    return scene.open_boundaries[patch.name].fluid or next(iter(scene.fluids))
 
 
 def with_buffers(
@@ -34,7 +32,7 @@ def with_buffers(
             filled[name] = points[~patch.behind(points, 0.5 * scene.spacing, period)]
     for patch in patches_of(scene):
         name = fluid_of(scene, patch)
-        buffer = buffer_points(patch, lattices[name])
+        buffer = buffer_of(scene, patch, lattices)
         filled[name] = np.concatenate([away_from(filled[name], buffer, CLOSEST * scene.spacing), buffer])
     return filled
 
@@ -62,6 +60,30 @@ def buffer_problems(
         if first.behind(inside, 0.0, period_of(scene)).any():
             message = f"its buffer, {second.length:g} m long, lies in that of {first.name!r}"
             yield Problem.at(f"open_boundaries.{second.name}.shape", message, "patches side by side or apart")
+
+
+def inflow_warnings(scene: Scene) -> list[str]:
+    """Patches with a uniform velocity or one from a table or formula, whose buffers bring in less or more than that.
+
+    A parabola is scaled so that its flow rate is met.
+    """
+    warnings = []
+    for patch in patches_of(scene):
+        boundary = scene.open_boundaries[patch.name]
+        if patch.has_level or boundary.type != "velocity" or boundary.velocity.type == "parabolic":
+            continue
+        section = len(columns_of(scene, patch)) * scene.spacing ** (scene.dimension - 1)
+        if abs(section / patch.area - 1.0) > _NOTABLE_MISFIT:
+            remedy = (
+                "`placement: relaxed` in its fluid"
+                if patch.is_disc
+                else f"a spacing that divides it, such as {float(patch.cell[0]):.4g} m,"
+            )
+            warnings.append(
+                f"the particles behind open_boundaries.{patch.name} stand for {section / patch.area:.1%} of its area "
+                f"and bring in that part of its flow; {remedy} would bring in all"
+            )
+    return warnings
 
 
 def _level_problems(patch: Patch, key: str) -> Iterator[Problem]:

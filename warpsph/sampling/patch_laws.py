@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 from scipy.interpolate import LinearNDInterpolator, NearestNDInterpolator
 
+from warpsph.sampling.buffer_points import flow_of_columns
 from warpsph.sampling.patches import Patch, patches_of
 from warpsph.sampling.time_laws import smooth_ramp
 from warpsph.scene.errors import Problem, SceneError
@@ -32,17 +33,15 @@ Values = Callable[[float], np.ndarray]
 
 
 class PatchLaw:
-    """What a patch prescribes at its stations.
-
-    Args:
-        key: of the open boundary in the scene, for errors.
-        base_directory: of the scene's files.
+    """What a patch of a scene prescribes at its stations.
 
     Raises SceneError where a file cannot be used, or an expression is not finite at time zero.
     """
 
-    def __init__(self, boundary: OpenBoundary, patch: Patch, key: str, base_directory: Path) -> None:
-        self._key, self._patch = key, patch
+    def __init__(self, scene: Scene, patch: Patch) -> None:
+        boundary, base_directory = scene.open_boundaries[patch.name], scene.base_directory
+        key = f"open_boundaries.{patch.name}"
+        self._scene, self._key, self._patch = scene, key, patch
         self._shape = (len(patch.stations), len(patch.center) + 1)
         self._places = patch.points(patch.stations)
         self._factor = _factor(boundary, key, base_directory)
@@ -91,12 +90,20 @@ class PatchLaw:
         return lambda time: velocity
 
     def _parabola(self, profile: ParabolicVelocity) -> np.ndarray:
+        """Speeds (s,) [m/s] of a parabola over the patch.
+
+        Columns of particles sample it at their middles, which over n columns brings 1 / (2 n^2) more than its integral:
+        it is scaled so that they bring the flow rate that is asked for.
+        """
         patch = self._patch
         mean = profile.mean if profile.mean is not None else float(profile.flow_rate or 0.0) / patch.area
         part = patch.stations / patch.half
         if patch.is_disc:
-            return 2.0 * mean * (1.0 - np.sum(part**2, axis=1))
-        return mean * np.prod(1.5 * (1.0 - part**2), axis=1)
+            speed = 2.0 * mean * (1.0 - np.sum(part**2, axis=1))
+        else:
+            speed = mean * np.prod(1.5 * (1.0 - part**2), axis=1)
+        brought = 0.0 if patch.has_level else flow_of_columns(self._scene, patch, speed)
+        return speed if brought == 0.0 else speed * (mean * patch.area / brought)
 
     def _tabulated(self, profile: TableVelocity, base_directory: Path) -> np.ndarray:
         names = [*AXES[: len(self._patch.center)], profile.speed]
@@ -136,10 +143,7 @@ class PatchLaw:
 
 def patch_laws(scene: Scene) -> list[PatchLaw]:
     """What the patches of a scene prescribe, in its order."""
-    return [
-        PatchLaw(boundary, patch, f"open_boundaries.{patch.name}", scene.base_directory)
-        for boundary, patch in zip(scene.open_boundaries.values(), patches_of(scene), strict=True)
-    ]
+    return [PatchLaw(scene, patch) for patch in patches_of(scene)]
 
 
 def expected_inflow(scene: Scene) -> float:

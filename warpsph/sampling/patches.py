@@ -8,13 +8,16 @@ from itertools import product
 
 import numpy as np
 
-from warpsph.sampling.axes import same_axes
-from warpsph.sampling.lattice import TIE, Lattice
+from warpsph.sampling.lattice import TIE
 from warpsph.sampling.regions import Period
 from warpsph.scene.open_boundaries import OpenBoundary
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
 
+FLUX_DEPTH = 2.0
+"""Depth on either side of a patch, in spacings, within which particles count for its flux."""
+BESIDE = 0.5
+"""Distance beside a patch, in spacings, within which they still count."""
 _SUBDIVISION = 16
 """Points along an edge of a station's cell from which its part inside of a disc is counted."""
 
@@ -64,6 +67,25 @@ class Patch:
         """Which points (n, dimension) lie in the buffer or within `margin` [m] beside it."""
         at = self.coordinates(points, period)
         return (at[:, 0] < 0.0) & (at[:, 0] >= -self.length) & self.covers(at[:, 1:], margin)
+
+    def share_inside(
+        self,
+        points: np.ndarray,
+        in_buffer: np.ndarray,
+        depth: float,
+        margin: float,
+        period: Period | None = None,
+    ) -> np.ndarray:
+        """Part (n,) of points (n, dimension) that lies inside, from nought `depth` [m] behind the patch to one as far
+        before it; one of what is not `in_buffer` (n,) and lies behind the buffer or more than `margin` [m] beside it.
+
+        The integral of a hat of that half width: its sum over particles changes by the flux that is weighted with the
+        hat (kernels/warpsph_kernels/patch_flux.py), not by a whole layer at a time.
+        """
+        at = self.coordinates(points, period)
+        s = np.clip(at[:, 0] / depth, -1.0, 1.0)
+        near = (at[:, 0] >= -self.length) & self.covers(at[:, 1:], margin)
+        return np.where(near | in_buffer, 0.5 * (1.0 + s * (2.0 - np.abs(s))), 1.0)
 
     @property
     def area(self) -> float:
@@ -117,6 +139,11 @@ class Patch:
         """Places (n, dimension) [m] of coordinates across the patch, at a depth [m] inside."""
         return self.center + depth * self.axes[:, 0] + across @ self.axes[:, 1:].T
 
+    def middles(self, k: int, parts: int = 1) -> np.ndarray:
+        """Coordinates [m] along the k-th direction across of the middles of cells, each cut into `parts`."""
+        n = parts * self.counts[k]
+        return self.half[k] * ((2.0 * np.arange(n) + 1.0) / n - 1.0)
+
     def _wet_shares(self) -> np.ndarray:
         """Part (s,) of the height of each station's cell that lies below the water level."""
         if not self.has_level:
@@ -126,11 +153,7 @@ class Patch:
         return np.clip(0.5 + depth / height, 0.0, 1.0)
 
     def _grid(self, parts: int) -> np.ndarray:
-        lines = [
-            half * ((2.0 * np.arange(parts * count) + 1.0) / (parts * count) - 1.0)
-            for half, count in zip(self.half, self.counts, strict=True)
-        ]
-        return np.array(list(product(*lines)))
+        return np.array(list(product(*(self.middles(k, parts) for k in range(len(self.counts))))))
 
 
 def patches_of(scene: Scene) -> list[Patch]:
@@ -180,30 +203,3 @@ def _frame(normal: np.ndarray, along: tuple[float, ...] | None) -> np.ndarray:
 def _first_axis_across(normal: np.ndarray) -> np.ndarray:
     steep = np.abs(normal) > 0.9
     return np.eye(len(AXES))[int(np.argmin(steep))]
-
-
-def buffer_points(patch: Patch, lattice: Lattice) -> np.ndarray:
-    """Particles (n, dimension) [m] that fill a buffer, up to its water level: on the lattice of its fluid if that lies
-    along the patch, else on one of its own."""
-    dp = lattice.spacing
-    if not same_axes(patch.axes, lattice.rotation):
-        corner = patch.axes.T @ patch.center - np.concatenate([[0.0], 0.5 * _whole(patch, dp)])
-        lattice = Lattice(dp, corner, patch.axes)
-    half = np.concatenate([[0.5 * patch.length], patch.half])
-    middle = patch.center - 0.5 * patch.length * patch.axes[:, 0]
-    extent = np.abs(lattice.rotation.T @ patch.axes) @ half
-    first, count = lattice.cells_between(
-        lattice.rotation.T @ middle - extent - dp, lattice.rotation.T @ middle + extent + dp
-    )
-    cells = np.stack(np.meshgrid(*(np.arange(n) for n in count), indexing="ij"), axis=-1)
-    points = lattice.centers(cells.reshape(-1, len(count)) + first)
-    at = patch.coordinates(points)
-    tie = TIE * dp
-    inside = (at[:, 0] <= -tie) & (at[:, 0] > -patch.length - tie) & patch.covers(at[:, 1:], -tie)
-    inside &= patch.below_level(points) > tie
-    return points[inside]
-
-
-def _whole(patch: Patch, spacing: float) -> np.ndarray:
-    """Lengths across the patch in whole spacings [m]."""
-    return np.array(patch.counts) * spacing

@@ -65,7 +65,7 @@ class UniformVelocity(SceneModel):
 
 class ParabolicVelocity(SceneModel):
     """A parabola that is zero at the edges: of a segment and a disc that of developed laminar flow, of a rectangle
-    the product of two."""
+    the product of two. It is scaled so that the particles bring in the flow rate that is asked for."""
 
     type: Literal["parabolic"] = "parabolic"
     mean: Real | None = None

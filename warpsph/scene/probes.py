@@ -266,8 +266,8 @@ class MomentumProbe(ProbeModel):
 
 class FluxProbe(ProbeModel):
     """What passes an open boundary into the domain, or all of them together: mass a second and its integral, from
-    density and velocity on the patch, and the mass of the particles that have entered less that of those that
-    have left."""
+    the particles on both sides of the patch and their velocity, and the mass of the particles that have entered less
+    that of those that have left."""
 
     type: Literal["flux"] = "flux"
     patch: Name | None = None
@@ -294,8 +294,9 @@ class WallLine(SceneModel):
 
 class VolumeBalanceProbe(ProbeModel):
     """Balance of the fluid between all open boundaries: mass that has entered, by the flux on the patches and counted
-    in particles, mass that the fluid has gained since the start, and the last less the first, by either. What leaves
-    through a hole of a wall is missing: it is lost in the kill box, or lies outside of the region.
+    in particles, mass that the fluid has gained since the start, where particles beside a patch count in part, and what
+    it has gained less what has entered: by the flux, and in whole particles. What leaves through a hole of a wall is
+    missing: it is lost in the kill box, or lies outside of the region.
 
     With flexible walls also the volume that the fluid has gained since the start (sum of m/rho), the volume that the
     walls have given to it, and the first less the second. Fluid in buffers does not count."""

@@ -17,6 +17,7 @@ from warpsph.physics.assembly import WallRange
 from warpsph.physics.flow_fields import FlowFields
 from warpsph.physics.wall_fields import WallFields
 from warpsph.sampling import SampledSet
+from warpsph.sampling.buffers import inflow_warnings
 from warpsph.scene.schema import Scene
 from warpsph.solver.assemble import FLUID, WallParts, assemble
 from warpsph.solver.describe import describe
@@ -167,7 +168,7 @@ class FluidSystem:
         return sum_up(self.time, fluids, np.asarray(self._scene.gravity))
 
     def warnings(self, largest: Mapping[str, float]) -> list[str]:
-        warnings = []
+        warnings = inflow_warnings(self._scene)
         mach = largest["speed"] / self.sound_speed
         if mach > NOTABLE_MACH:
             warnings.append(

@@ -16,7 +16,7 @@ def inflows(parts: Parts) -> dict[str, Inflow]:
     opened = parts.open_boundaries
     if opened is None:
         return {}
-    flux, mass = host_view(opened.model.flux), host_view(opened.model.mass)
+    flux, mass = host_view(opened.model.passing.flux), host_view(opened.model.passing.mass)
     particle = float(parts.assembly.constants.mass)
     found = {}
     for k, patch in enumerate(opened.model.patches):
