@@ -124,7 +124,8 @@ def flow_comes_back_through_an_outlet(machine: Machine) -> list[Figure]:
         if time % 2.0 == 0.0:
             gained = max(gained, abs(inside(simulation) - first))
     outlet = passed(simulation)["outlet"]
-    expected = -(DENSITY + pressure / simulation.sound_speed**2) * 0.5 * 6.0 * HEIGHT
+    # Buffers bring in particles of the spacing of rest at any pressure, and so the mass of fluid at rest.
+    expected = -DENSITY * 0.5 * 6.0 * HEIGHT
     return [
         Figure("error of the mean velocity", off / 1.2, 0.09),
         Figure("particles gained, in layers", gained * DP / HEIGHT, 1.0),
