@@ -79,7 +79,7 @@ def test_the_columns_of_a_buffer_bring_in_the_flow_rate_of_a_parabola(case: str,
     if patch.is_disc:
         assert speed.max() == pytest.approx(4.0 * 2.0 * area / carried, rel=0.06)
     else:
-        assert np.allclose(patch.stations, columns) or len(columns) == len(speed)
+        assert np.allclose(np.sort(patch.stations, axis=0), np.sort(columns, axis=0))
         assert float(speed.sum()) * scene.spacing ** (scene.dimension - 1) == pytest.approx(2.0 * area)
         assert speed.max() == pytest.approx(exact.max() * 2.0 * area / carried)
 

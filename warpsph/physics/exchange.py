@@ -14,9 +14,7 @@ from warpsph.particles.neighbours import NeighbourSearch, Reordered
 from warpsph.particles.state import HostTable, host_view
 from warpsph.physics.assembly import Assembly
 from warpsph.physics.open_boundary import OpenBoundaryModel
-
-EDGE_MARGIN = 0.5
-"""Distance in spacings beside a patch within which fluid behind it belongs to its buffer."""
+from warpsph.sampling.patches import EDGE_MARGIN
 
 
 class ExchangeModel:

@@ -10,7 +10,7 @@ from warpsph_kernels.patch_flux import make_patch_flux_kernels
 
 from warpsph.particles.neighbours import NeighbourSearch
 from warpsph.physics.assembly import Assembly
-from warpsph.sampling.patches import BESIDE, FLUX_DEPTH, Patch
+from warpsph.sampling.patches import EDGE_MARGIN, FLUX_DEPTH, Patch
 
 
 class PatchFluxModel:
@@ -43,7 +43,7 @@ class PatchFluxModel:
             kernels.gather_flux,
             assembly.constants,
             real(FLUX_DEPTH * spacing),
-            real(BESIDE * spacing),
+            real(EDGE_MARGIN * spacing),
             search.grid,
             search.tables[0].start,
             device_patches,

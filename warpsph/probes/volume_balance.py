@@ -8,7 +8,7 @@ from warpsph.frame import Frame
 from warpsph.geometry.polygons import polygon_area
 from warpsph.probes.material_point import MaterialPoint
 from warpsph.probes.probe import Probe
-from warpsph.sampling.patches import BESIDE, FLUX_DEPTH, patches_of
+from warpsph.sampling.patches import EDGE_MARGIN, FLUX_DEPTH, patches_of
 from warpsph.sampling.walls import period_of
 from warpsph.scene.probes import VolumeBalanceProbe as VolumeBalanceSpec
 from warpsph.scene.probes import WallLine
@@ -73,7 +73,7 @@ class VolumeBalanceProbe(Probe):
 
     def _shares(self, position: np.ndarray, tag: np.ndarray) -> np.ndarray:
         """Part (n,) of each particle that lies between the patches, of which `tag` (n,) names the one behind it."""
-        depth, margin = FLUX_DEPTH * self._spacing, BESIDE * self._spacing
+        depth, margin = FLUX_DEPTH * self._spacing, EDGE_MARGIN * self._spacing
         shares = np.ones(len(position))
         for k, patch in enumerate(self._patches):
             share = patch.share_inside(position, tag == k, depth, margin, self._period)

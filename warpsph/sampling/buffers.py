@@ -8,10 +8,10 @@ from itertools import combinations
 import numpy as np
 from scipy.spatial import cKDTree
 
-from warpsph.sampling.buffer_points import buffer_of, columns_of, fluid_of
+from warpsph.sampling.buffer_points import buffer_of, flow_of_columns, fluid_of
 from warpsph.sampling.lattice import Lattice
 from warpsph.sampling.packing import CLOSEST, away_from
-from warpsph.sampling.patches import Patch, patches_of
+from warpsph.sampling.patches import EDGE_MARGIN, Patch, patches_of
 from warpsph.sampling.walls import period_of
 from warpsph.scene.errors import Problem
 from warpsph.scene.schema import Scene
@@ -29,7 +29,7 @@ def with_buffers(
     filled, period = dict(fluids), period_of(scene)
     for patch in patches_of(scene):
         for name, points in filled.items():
-            filled[name] = points[~patch.behind(points, 0.5 * scene.spacing, period)]
+            filled[name] = points[~patch.behind(points, EDGE_MARGIN * scene.spacing, period)]
     for patch in patches_of(scene):
         name = fluid_of(scene, patch)
         buffer = buffer_of(scene, patch, lattices)
@@ -72,7 +72,7 @@ def inflow_warnings(scene: Scene) -> list[str]:
         boundary = scene.open_boundaries[patch.name]
         if patch.has_level or boundary.type != "velocity" or boundary.velocity.type == "parabolic":
             continue
-        section = len(columns_of(scene, patch)) * scene.spacing ** (scene.dimension - 1)
+        section = flow_of_columns(scene, patch, np.ones(len(patch.stations)))
         if abs(section / patch.area - 1.0) > _NOTABLE_MISFIT:
             remedy = (
                 "`placement: relaxed` in its fluid"

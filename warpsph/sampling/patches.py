@@ -16,8 +16,8 @@ from warpsph.scene.types import AXES
 
 FLUX_DEPTH = 2.0
 """Depth on either side of a patch, in spacings, within which particles count for its flux."""
-BESIDE = 0.5
-"""Distance beside a patch, in spacings, within which they still count."""
+EDGE_MARGIN = 0.5
+"""Distance beside a patch, in spacings, within which fluid behind it belongs to its buffer, and counts for its flux."""
 _SUBDIVISION = 16
 """Points along an edge of a station's cell from which its part inside of a disc is counted."""
 

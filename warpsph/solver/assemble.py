@@ -17,7 +17,7 @@ from warpsph.particles.neighbours import NeighbourSearch, Reordered, SearchSpace
 from warpsph.particles.state import Layout, allocate_scratch, allocate_state, arrays_of, write_array
 from warpsph.physics.assembly import Assembly, WallRange, WallSurface
 from warpsph.physics.boundary import WallModel, make_wall_surface, no_slip_flags
-from warpsph.physics.exchange import EDGE_MARGIN, ExchangeModel
+from warpsph.physics.exchange import ExchangeModel
 from warpsph.physics.fluid import (
     FluidModel,
     fluid_constants,
@@ -33,6 +33,7 @@ from warpsph.sampling import SampledSet
 from warpsph.sampling.kinematics import largest_speed, rigid_motions
 from warpsph.sampling.mirror import mirror_ways
 from warpsph.sampling.patch_laws import expected_inflow
+from warpsph.sampling.patches import EDGE_MARGIN
 from warpsph.sampling.walls import period_of
 from warpsph.scene.schema import Scene
 from warpsph.scene.types import AXES
