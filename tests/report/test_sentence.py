@@ -116,3 +116,10 @@ def test_words() -> None:
     assert quoted_error(row(0.1, 0.013, uncertainty=0.01)) == "1.3 %"
     assert quoted_error(row(0.1, None)) == "-"
     assert quoted_error(row(0.1, 0.001, uncertainty=0.01) | {"error_unit": "m"}) == "<= 0.01 m"
+
+
+def test_without_a_bound_an_error_is_what_it_is_off_by() -> None:
+    """A reference that is known no better than that still makes it something to be within."""
+    free = {"bound": None, "holds": None}
+    assert sentence_of([row(0.1, 18.7, **free)]).startswith("Front off by 1870 % for 40 s")
+    assert sentence_of([row(0.1, 0.01, uncertainty=0.2, **free)]).startswith("Front within 20 %, as close as")

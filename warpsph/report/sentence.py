@@ -90,10 +90,12 @@ def _achieved(finest: Sequence[Row], worst: Study | None, rows: Sequence[Row]) -
 
 
 def _within(study: Study, finest: Sequence[Row]) -> str:
+    """Only a bound that holds, or a reference that knows no better, makes an error something to be within."""
+    name, error = quantity_in_words(study.quantity), percent(_error(study))
+    if study.finest.at_uncertainty:
+        return f"{name} within {error}, as close as the reference is known,"
     holds = next(row["holds"] for row in finest if row["quantity"] == study.quantity)
-    relation = "off by" if holds is False else "within"
-    text = f"{quantity_in_words(study.quantity)} {relation} {percent(_error(study))}"
-    return f"{text}, as close as the reference is known," if study.finest.at_uncertainty else text
+    return f"{name} {'within' if holds else 'off by'} {error}"
 
 
 def _others(count: int) -> str:
